@@ -1,0 +1,184 @@
+#include "port/sim/solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatpose::sim {
+namespace {
+
+constexpr double kCellMm = 2.0;
+constexpr double kMarginMm = 1.0;
+constexpr double kTinyMm = 1e-9;  // far above the rounding at 2 m, far below anything visible
+
+int cell_index(double offset_mm, int count) {
+  return std::clamp(static_cast<int>(std::floor(offset_mm / kCellMm)), 0, count - 1);
+}
+
+Vec2 plan(const Ray& ray, double distance_mm) {
+  return {ray.origin_mm.x + distance_mm * ray.direction.x,
+          ray.origin_mm.y + distance_mm * ray.direction.y};
+}
+
+/// Shortens [from, to] to where low <= start + t * step <= high.
+void clip(double start, double step, double low, double high, double& from, double& to) {
+  if (step == 0.0) {
+    if (start < low || start > high) to = from - 1.0;
+    return;
+  }
+  const double a = (low - start) / step;
+  const double b = (high - start) / step;
+  from = std::max(from, std::min(a, b));
+  to = std::min(to, std::max(a, b));
+}
+
+}  // namespace
+
+Solid::Solid(std::shared_ptr<const Part> part) : part_(std::move(part)) {
+  Vec2 low{1e9, 1e9};
+  Vec2 high{-1e9, -1e9};
+  for (const Vec2 p : part_->outline.outer) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  low_mm_ = {low.x - kMarginMm, low.y - kMarginMm, -part_->thickness_mm - kMarginMm};
+  high_mm_ = {high.x + kMarginMm, high.y + kMarginMm, height_max_mm(*part_) + kMarginMm};
+  sphere_center_mm_ = 0.5 * (low_mm_ + high_mm_);
+  sphere_radius_mm_ = 0.5 * norm(high_mm_ - low_mm_);
+  add_edges(part_->outline.outer);
+  for (const Loop& hole : part_->outline.holes) add_edges(hole);
+  for (const Area& area : part_->areas) add_edges(area.loop);
+  build_grid();
+}
+
+void Solid::add_edges(const Loop& loop) {
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    edges_.push_back({loop[i], loop[(i + 1) % loop.size()] - loop[i]});
+  }
+}
+
+void Solid::build_grid() {
+  columns_ = static_cast<int>(std::ceil((high_mm_.x - low_mm_.x) / kCellMm));
+  rows_ = static_cast<int>(std::ceil((high_mm_.y - low_mm_.y) / kCellMm));
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      cells_.push_back(height_at({low_mm_.x + (column + 0.5) * kCellMm,  //
+                                  low_mm_.y + (row + 0.5) * kCellMm}));
+    }
+  }
+  for (const Edge& edge : edges_) mark(edge);
+}
+
+void Solid::mark(const Edge& edge) {
+  const double y_low = std::min(edge.from.y, edge.from.y + edge.along.y) - kTinyMm;
+  const double y_high = std::max(edge.from.y, edge.from.y + edge.along.y) + kTinyMm;
+  const int last_row = cell_index(y_high - low_mm_.y, rows_);
+  for (int row = cell_index(y_low - low_mm_.y, rows_); row <= last_row; ++row) {
+    // The piece of the edge in this row of cells.
+    double from = 0.0;
+    double to = 1.0;
+    const double row_mm = low_mm_.y + row * kCellMm;
+    clip(edge.from.y, edge.along.y, row_mm - kTinyMm, row_mm + kCellMm + kTinyMm, from, to);
+    if (from > to) continue;
+    const double a = edge.from.x + from * edge.along.x - low_mm_.x;
+    const double b = edge.from.x + to * edge.along.x - low_mm_.x;
+    const int last_column = cell_index(std::max(a, b) + kTinyMm, columns_);
+    for (int column = cell_index(std::min(a, b) - kTinyMm, columns_); column <= last_column;
+         ++column) {
+      cells_[row * columns_ + column] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
+double Solid::height_at(Vec2 p_mm) const noexcept {
+  return top_height_mm(*part_, p_mm).value_or(kNoPart);
+}
+
+std::optional<Solid::Interval> Solid::clip_to_box(const Ray& ray, Interval range) const noexcept {
+  const Vec3& o = ray.origin_mm;
+  const Vec3& d = ray.direction;
+  clip(o.z, d.z, low_mm_.z, high_mm_.z, range.from_mm, range.to_mm);
+  clip(o.x, d.x, low_mm_.x, high_mm_.x, range.from_mm, range.to_mm);
+  clip(o.y, d.y, low_mm_.y, high_mm_.y, range.from_mm, range.to_mm);
+  if (range.from_mm > range.to_mm) return std::nullopt;
+  return range;
+}
+
+std::optional<double> Solid::height_without_edges(const Ray& ray, Interval range) const noexcept {
+  const Vec2 a = plan(ray, range.from_mm);
+  const Vec2 b = plan(ray, range.to_mm);
+  const int left = cell_index(std::min(a.x, b.x) - low_mm_.x, columns_);
+  const int right = cell_index(std::max(a.x, b.x) - low_mm_.x, columns_);
+  const int bottom = cell_index(std::min(a.y, b.y) - low_mm_.y, rows_);
+  const int top = cell_index(std::max(a.y, b.y) - low_mm_.y, rows_);
+  const double height_mm = cells_[bottom * columns_ + left];
+  for (int row = bottom; row <= top; ++row) {
+    for (int column = left; column <= right; ++column) {
+      // NaN, an edge, equals nothing.
+      if (!(cells_[row * columns_ + column] == height_mm)) return std::nullopt;
+    }
+  }
+  return height_mm;
+}
+
+std::optional<SolidHit> Solid::enter(const Ray& ray, Interval range, double height_mm,
+                                     const Edge* edge) const noexcept {
+  if (height_mm == kNoPart) return std::nullopt;
+  Interval inside = range;
+  clip(ray.origin_mm.z, ray.direction.z, -part_->thickness_mm, height_mm, inside.from_mm,
+       inside.to_mm);
+  if (inside.from_mm > inside.to_mm) return std::nullopt;
+  if (inside.from_mm > range.from_mm) {
+    const bool down = ray.direction.z < 0.0;
+    return SolidHit{inside.from_mm, {0, 0, down ? 1.0 : -1.0}, down ? Face::kTop : Face::kBottom};
+  }
+  if (edge == nullptr) return SolidHit{inside.from_mm, -ray.direction, Face::kInside};
+  Vec3 normal = normalized(Vec3{edge->along.y, -edge->along.x, 0.0});
+  if (dot(normal, ray.direction) > 0.0) normal = -normal;
+  return SolidHit{inside.from_mm, normal, Face::kSide};
+}
+
+std::optional<SolidHit> Solid::first_hit(const Ray& ray, double from_mm, double to_mm) const {
+  const auto range = clip_to_box(ray, {from_mm, to_mm});
+  if (!range) return std::nullopt;
+  if (const auto height_mm = height_without_edges(ray, *range)) {
+    return enter(ray, *range, *height_mm, nullptr);
+  }
+  struct Cut {
+    double distance_mm;
+    const Edge* edge;
+  };
+  thread_local std::vector<Cut> cuts;
+  cuts.clear();
+  const Vec2 o{ray.origin_mm.x, ray.origin_mm.y};
+  const Vec2 d{ray.direction.x, ray.direction.y};
+  for (const Edge& edge : edges_) {
+    const double turn = cross(d, edge.along);
+    if (turn == 0.0) continue;  // runs along the edge: the neighbours cut it
+    const Vec2 to_edge = edge.from - o;
+    const double share = cross(to_edge, d) / turn;
+    // A cut too many does no harm (the height is looked up on both sides of it), one too few would.
+    if (!(share >= -kTinyMm && share <= 1.0 + kTinyMm)) continue;
+    const double distance_mm = cross(to_edge, edge.along) / turn;
+    if (distance_mm > range->from_mm && distance_mm < range->to_mm) {
+      cuts.push_back({distance_mm, &edge});
+    }
+  }
+  std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
+    return a.distance_mm < b.distance_mm || (a.distance_mm == b.distance_mm && a.edge < b.edge);
+  });
+  cuts.push_back({range->to_mm, nullptr});
+  Interval piece{range->from_mm, 0.0};
+  const Edge* entered_over = nullptr;
+  for (const Cut& cut : cuts) {
+    piece.to_mm = cut.distance_mm;
+    if (piece.to_mm - piece.from_mm > kTinyMm) {
+      const double height_mm = height_at(plan(ray, 0.5 * (piece.from_mm + piece.to_mm)));
+      if (const auto hit = enter(ray, piece, height_mm, entered_over)) return hit;
+      piece.from_mm = cut.distance_mm;
+    }
+    entered_over = cut.edge;
+  }
+  return std::nullopt;
+}
+
+}  // namespace flatpose::sim
