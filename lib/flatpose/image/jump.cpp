@@ -1,0 +1,146 @@
+#include "flatpose/image/jump.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace flatpose::image {
+namespace {
+
+// A cell with a value at least this much larger than the next is larger; less is a tie, which the
+// upper side wins. Without it rounding would pick both or none of the two cells beside a step.
+constexpr float kTieFactor = 1.0F + 1e-4F;
+constexpr float kFar_px = 5.0F;  // a slope beside the edge must last this far to be the surface's
+constexpr float kNear_px = 2.5F;
+constexpr float kHeight_px = 2.0F;  // distance at which the heights of both sides are read
+constexpr float kFinite = 1e30F;
+
+struct Ridge {
+  Vec2f at;    // centre of the cell
+  Vec2f fall;  // unit direction of the fall
+  Vec2f surface_slope;
+  bool found = false;
+};
+
+Vec2f agreed(Vec2f a, Vec2f b) noexcept {
+  return {smaller_if_agreed(a.x, b.x), smaller_if_agreed(a.y, b.y)};
+}
+
+Vec2f cell_slope(const SlopeField& f, int column, int row) noexcept {
+  const int x = std::clamp(column, 1, f.slope_x.width_px - 2);
+  const int y = std::clamp(row, 1, f.slope_x.height_px - 2);
+  return {f.slope_x(x, y), f.slope_y(x, y)};
+}
+
+// The direction of the jump at a cell, the surface's own slope taken off.
+Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept {
+  Ridge ridge{{static_cast<float>(column), static_cast<float>(row)}, {}, {}, false};
+  const Vec2f here = cell_slope(f, column, row);
+  ridge.surface_slope = {smaller_if_agreed(cell_slope(f, column - kBeside_px, row).x,
+                                           cell_slope(f, column + kBeside_px, row).x),
+                         smaller_if_agreed(cell_slope(f, column, row - kBeside_px).y,
+                                           cell_slope(f, column, row + kBeside_px).y)};
+  for (int round = 0; round < 2; ++round) {
+    const Vec2f rest = here - ridge.surface_slope;
+    const float length = norm(rest);
+    if (!(length >= least && length < kFinite)) return ridge;
+    ridge.fall = (-1.0F / length) * rest;
+    if (round == 1) break;
+    const Vec2f reach = static_cast<float>(kBeside_px) * ridge.fall;
+    ridge.surface_slope = agreed(f.slope_at(ridge.at - reach), f.slope_at(ridge.at + reach));
+  }
+  ridge.found = true;
+  return ridge;
+}
+
+// How steeply it falls t cells along the ridge's direction.
+float fall_at(const SlopeField& f, const Ridge& r, float t) noexcept {
+  return -dot(f.slope_at(r.at + t * r.fall), r.fall);
+}
+
+// The surface's fall on one side: what lasts from near to far. Where nothing was seen it is level.
+float side_fall(const SlopeField& f, Vec2f edge, Vec2f fall, float side) noexcept {
+  if (f.missing_at(edge + (side * kNear_px) * fall)) return 0.0F;
+  return smaller_if_agreed(-f.climb_at(edge + (side * kNear_px) * fall, fall),
+                           -f.climb_at(edge + (side * kFar_px) * fall, fall));
+}
+
+struct Sides {
+  float before = 0.0F;
+  float after = 0.0F;
+  float step_mm = 0.0F;
+};
+
+Sides look_beside(const SlopeField& f, Vec2f edge, Vec2f fall) noexcept {
+  Sides s;
+  s.before = side_fall(f, edge, fall, -1.0F);
+  s.after = side_fall(f, edge, fall, 1.0F);
+  s.step_mm = f.mean_height_at(edge - kHeight_px * fall, fall) -
+              f.mean_height_at(edge + kHeight_px * fall, fall) - kHeight_px * (s.before + s.after);
+  return s;
+}
+
+// Top of the parabola through values at -1, 0 and 1, the middle one being the largest.
+float top_of_parabola(float before, float here, float after) noexcept {
+  const float bend = before - 2.0F * here + after;
+  if (!(bend < 0.0F)) return 0.0F;
+  return std::clamp(0.5F * (before - after) / bend, -1.0F, 1.0F);
+}
+
+// Sum of the slopes around a place that point with the ridge, weighted by a bell: the direction of
+// the contour along some cells of it.
+Vec2f mean_fall(const SlopeField& f, const Ridge& r, Vec2f surface_slope, int column, int row,
+                float least) noexcept {
+  constexpr int kReach_px = 3;
+  // Binomial (1 4 6 4 1) convolved once more: near a Gaussian of 1.2 cells.
+  constexpr std::array<float, 2 * kReach_px + 1> kBell = {1, 6, 15, 20, 15, 6, 1};
+  Vec2f sum;
+  for (int dy = -kReach_px; dy <= kReach_px; ++dy) {
+    for (int dx = -kReach_px; dx <= kReach_px; ++dx) {
+      const Vec2f fall = surface_slope - cell_slope(f, column + dx, row + dy);
+      if (!(dot(fall, r.fall) >= least)) continue;
+      sum = sum + (kBell[dx + kReach_px] * kBell[dy + kReach_px]) * fall;
+    }
+  }
+  const float length = norm(sum);
+  return length > 0.0F && length < kFinite ? (1.0F / length) * sum : r.fall;
+}
+
+}  // namespace
+
+JumpTest test_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
+  const Ridge r = find_ridge(f, column, row, jump_low_mm / kSmear_px);
+  if (!r.found) return {};
+  const float here = fall_at(f, r, 0.0F);
+  const float before = fall_at(f, r, -1.0F);
+  const float after = fall_at(f, r, 1.0F);
+  if (!(here >= before * kTieFactor && here * kTieFactor >= after)) return {};
+  if (!(here >= fall_at(f, r, -2.0F) && here >= fall_at(f, r, 2.0F))) return {};
+
+  const Vec2f edge = r.at + top_of_parabola(before, here, after) * r.fall;
+  constexpr float kBesideStep_px = 0.75F;
+  if (f.missing_at(edge - kBesideStep_px * r.fall)) return {};
+  const Sides sides = look_beside(f, edge, r.fall);
+  const float excess = here - std::max(0.0F, std::max(sides.before, sides.after));
+  const bool below_missing = f.missing_at(edge + kBesideStep_px * r.fall);
+  return {std::min(sides.step_mm, kSmear_px * excess),
+          below_missing ? EdgeKind::kMissingBorder : EdgeKind::kJump};
+}
+
+EdgePoint measure_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
+  Ridge r = find_ridge(f, column, row, jump_low_mm / kSmear_px);
+  const float least = 0.25F * (fall_at(f, r, 0.0F) + dot(r.surface_slope, r.fall));
+  r.fall = mean_fall(f, r, r.surface_slope, column, row, least);
+  const auto fall = [&](float t) { return -f.climb_at(r.at + t * r.fall, r.fall); };
+  const Vec2f edge = r.at + top_of_parabola(fall(-1.0F), fall(0.0F), fall(1.0F)) * r.fall;
+  EdgePoint point;
+  point.x_px = edge.x;
+  point.y_px = edge.y;
+  point.dx = r.fall.x;
+  point.dy = r.fall.y;
+  point.step_mm = std::max(0.0F, look_beside(f, edge, r.fall).step_mm);
+  point.column = static_cast<std::int16_t>(column);
+  point.row = static_cast<std::int16_t>(row);
+  return point;
+}
+
+}  // namespace flatpose::image
