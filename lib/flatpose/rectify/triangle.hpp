@@ -1,0 +1,28 @@
+#pragma once
+// Fills the cells of a height map whose centres lie in a triangle. Inside is decided in integers
+// and the border belongs to the triangle, so neighbours leave no crack between them.
+
+#include <cstdint>
+
+#include "flatpose/rectify/height_map.hpp"
+
+namespace flatpose::rectify {
+
+/// A corner of a triangle; the place in units of 1 / kUnitsPerCell, odd (see scan_row.hpp).
+struct Corner {
+  std::int32_t u = 0;
+  std::int32_t v = 0;
+  float z_mm = 0.0F;
+  std::int32_t source_index = kNoSource;
+};
+
+/// Paints the triangle a, b, c of either winding; none of no area.
+/// Cost: the cells of its box.  Thread: one painter a map.
+void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
+                    const Corner& c) noexcept;
+
+/// Paints the triangles a, b, c and a, c, d: all of a quad.
+void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
+                const Corner& d) noexcept;
+
+}  // namespace flatpose::rectify
