@@ -160,13 +160,21 @@ EdgePoint measure(const SlopeField& f, const Thresholds& t, int x, int y, EdgeKi
   return point;
 }
 
-Result<int> collect(const SlopeField& f, const Thresholds& t, ImageView<const std::uint8_t> kinds,
+// Measures what was kept. Where the closer look finds no step left, noise beside a real contour was
+// taken for one: that cell is dropped.
+Result<int> collect(const SlopeField& f, const Thresholds& t, ImageView<std::uint8_t> kinds,
                     std::span<EdgePoint> out) noexcept {
+  constexpr float kLeastLeft = 0.5F;  // of the threshold it has passed
   std::size_t count = 0;
   for (int y = 0; y < kinds.height_px; ++y) {
-    const std::uint8_t* row = kinds.row(y);
+    std::uint8_t* row = kinds.row(y);
     for_each_set(row, kinds.width_px, [&](int x) {
-      if (count < out.size()) out[count] = measure(f, t, x, y, static_cast<EdgeKind>(row[x]));
+      const EdgePoint point = measure(f, t, x, y, static_cast<EdgeKind>(row[x]));
+      if (point.kind != EdgeKind::kCrease && !(point.step_mm >= kLeastLeft * t.jump_low_mm)) {
+        row[x] = 0;
+        return;
+      }
+      if (count < out.size()) out[count] = point;
       ++count;
     });
   }

@@ -52,6 +52,16 @@ Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept
   return ridge;
 }
 
+// The surface's slope beside an edge found, read along five cells of the contour on each side.
+Vec2f steady_surface_slope(const SlopeField& f, const Ridge& r) noexcept {
+  const Vec2f along = 2.0F * quarter_turn(r.fall);
+  const auto mean = [&](Vec2f p) {
+    return 0.5F * f.slope_at(p) + 0.25F * (f.slope_at(p - along) + f.slope_at(p + along));
+  };
+  const Vec2f reach = static_cast<float>(kBeside_px) * r.fall;
+  return agreed(mean(r.at - reach), mean(r.at + reach));
+}
+
 // How steeply it falls t cells along the ridge's direction.
 float fall_at(const SlopeField& f, const Ridge& r, float t) noexcept {
   return -dot(f.slope_at(r.at + t * r.fall), r.fall);
@@ -88,15 +98,14 @@ float top_of_parabola(float before, float here, float after) noexcept {
 
 // Sum of the slopes around a place that point with the ridge, weighted by a bell: the direction of
 // the contour along some cells of it.
-Vec2f mean_fall(const SlopeField& f, const Ridge& r, Vec2f surface_slope, int column, int row,
-                float least) noexcept {
-  constexpr int kReach_px = 3;
-  // Binomial (1 4 6 4 1) convolved once more: near a Gaussian of 1.2 cells.
-  constexpr std::array<float, 2 * kReach_px + 1> kBell = {1, 6, 15, 20, 15, 6, 1};
+Vec2f mean_fall(const SlopeField& f, const Ridge& r, int column, int row) noexcept {
+  const float least = 0.25F * dot(r.surface_slope - f.slope_at(r.at), r.fall);
+  constexpr int kReach_px = 4;
+  constexpr std::array<float, 2 * kReach_px + 1> kBell = {1, 2, 3, 4, 5, 4, 3, 2, 1};
   Vec2f sum;
   for (int dy = -kReach_px; dy <= kReach_px; ++dy) {
     for (int dx = -kReach_px; dx <= kReach_px; ++dx) {
-      const Vec2f fall = surface_slope - cell_slope(f, column + dx, row + dy);
+      const Vec2f fall = r.surface_slope - cell_slope(f, column + dx, row + dy);
       if (!(dot(fall, r.fall) >= least)) continue;
       sum = sum + (kBell[dx + kReach_px] * kBell[dy + kReach_px]) * fall;
     }
@@ -128,8 +137,8 @@ JumpTest test_jump(const SlopeField& f, int column, int row, float jump_low_mm) 
 
 EdgePoint measure_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
   Ridge r = find_ridge(f, column, row, jump_low_mm / kSmear_px);
-  const float least = 0.25F * (fall_at(f, r, 0.0F) + dot(r.surface_slope, r.fall));
-  r.fall = mean_fall(f, r, r.surface_slope, column, row, least);
+  r.surface_slope = steady_surface_slope(f, r);
+  r.fall = mean_fall(f, r, column, row);
   const auto fall = [&](float t) { return -f.climb_at(r.at + t * r.fall, r.fall); };
   const Vec2f edge = r.at + top_of_parabola(fall(-1.0F), fall(0.0F), fall(1.0F)) * r.fall;
   EdgePoint point;

@@ -76,6 +76,10 @@ void write_work_file(const std::string& path, const WorkFile& work) {
   if (!(norm(p_mm) <= kCoordinateMax_mm) || !is_rotation(work.work_T_scan.rotation))
     throw InputError(path, "the pose to write is no finite rigid pose",
                      "align with a scan that shows the work plane");
+  if (work.quality &&
+      !(std::isfinite(work.quality->plane_rms_mm) && std::isfinite(work.quality->inlier_share)))
+    throw InputError(path, "the quality to write is not finite",
+                     "align with a scan that shows the work plane");
   nlohmann::ordered_json json;
   json["format"] = kFormat;
   json["version"] = kVersion;
