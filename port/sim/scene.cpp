@@ -132,7 +132,17 @@ void build_tilt(Layout& layout) {
   const Rotation rotation = rotation_from_vector({config.tilt_x_rad, 0.0, 0.0}) *
                             rotation_from_vector({0.0, config.tilt_y_rad, 0.0}) *
                             rotation_about_z(turn_rad);
-  layout.result.instances.push_back({layout.target, {rotation, position_mm}});
+  const Pose scan_T_object{rotation, position_mm};
+  for (const Vec2 p : layout.target->outline.outer) {
+    for (const double z_mm : {-layout.target->thickness_mm, height_max_mm(*layout.target)}) {
+      if (!((scan_T_object * Vec3{p.x, p.y, z_mm}).z >= 0.0)) {  // so that NaN is caught too
+        throw std::invalid_argument(
+            "scene 'tilt': the part would reach under the floor; raise "
+            "held_height_mm");
+      }
+    }
+  }
+  layout.result.instances.push_back({layout.target, scan_T_object});
 }
 
 void build_empty(Layout&) {}

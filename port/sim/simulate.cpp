@@ -11,7 +11,7 @@ namespace flatpose::sim {
 namespace {
 
 constexpr int kUnseen = -2;
-constexpr double kVisibleSamples = 4000.0;  // over the top of a part: 0.5 % of it at worst
+constexpr double kVisibleSamples = 10000.0;  // over the top of a part; a line of them is 1 %
 
 /// One laser ray: how far its light goes, and which face the camera sees it on.
 struct Reading {
@@ -72,20 +72,22 @@ class Scanner {
     return false;
   }
 
-  /// Mean range over the footprint, of what is seen of it.
+  /// Range at the mean height of what is seen of the footprint. Heights, not ranges, are averaged:
+  /// a level face keeps its level however much of the footprint lies on it.
   [[nodiscard]] double mixed_range_mm(const Vec3& floor_mm) const {
-    double sum_mm = 0.0;
+    double share_sum = 0.0;  // of the way to the floor
     int count = 0;
     for (int y = -1; y <= 1; ++y) {
       for (int x = -1; x <= 1; ++x) {
         const double step_mm = config_.footprint_mm / 3.0;
-        const Reading part = read(world_, ruler_, floor_mm + Vec3{x * step_mm, y * step_mm, 0.0});
-        if (part.surface == kUnseen) continue;
-        sum_mm += part.range_mm;
+        const Vec3 target_mm = floor_mm + Vec3{x * step_mm, y * step_mm, 0.0};
+        const Reading reading = read(world_, ruler_, target_mm);
+        if (reading.surface == kUnseen) continue;
+        share_sum += reading.range_mm / norm(target_mm - ruler_.laser_mm());
         ++count;
       }
     }
-    return sum_mm / count;  // the middle one is seen, or we were not here
+    return share_sum / count * norm(floor_mm - ruler_.laser_mm());  // the middle one is seen
   }
 
   void measure(int column, int row, float* xyz_mm) const {

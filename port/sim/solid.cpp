@@ -137,20 +137,10 @@ std::optional<SolidHit> Solid::enter(const Ray& ray, Interval range, double heig
   return SolidHit{inside.from_mm, normal, Face::kSide};
 }
 
-std::optional<SolidHit> Solid::first_hit(const Ray& ray, double from_mm, double to_mm) const {
-  const auto range = clip_to_box(ray, {from_mm, to_mm});
-  if (!range) return std::nullopt;
-  if (const auto height_mm = height_without_edges(ray, *range)) {
-    return enter(ray, *range, *height_mm, nullptr);
-  }
-  struct Cut {
-    double distance_mm;
-    const Edge* edge;
-  };
-  thread_local std::vector<Cut> cuts;
-  cuts.clear();
+void Solid::find_cuts(const Ray& ray, Interval range, std::vector<Cut>& cuts) const {
   const Vec2 o{ray.origin_mm.x, ray.origin_mm.y};
   const Vec2 d{ray.direction.x, ray.direction.y};
+  cuts.clear();
   for (const Edge& edge : edges_) {
     const double turn = cross(d, edge.along);
     if (turn == 0.0) continue;  // runs along the edge: the neighbours cut it
@@ -159,14 +149,24 @@ std::optional<SolidHit> Solid::first_hit(const Ray& ray, double from_mm, double 
     // A cut too many does no harm (the height is looked up on both sides of it), one too few would.
     if (!(share >= -kTinyMm && share <= 1.0 + kTinyMm)) continue;
     const double distance_mm = cross(to_edge, edge.along) / turn;
-    if (distance_mm > range->from_mm && distance_mm < range->to_mm) {
+    if (distance_mm > range.from_mm && distance_mm < range.to_mm) {
       cuts.push_back({distance_mm, &edge});
     }
   }
   std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
     return a.distance_mm < b.distance_mm || (a.distance_mm == b.distance_mm && a.edge < b.edge);
   });
-  cuts.push_back({range->to_mm, nullptr});
+  cuts.push_back({range.to_mm, nullptr});
+}
+
+std::optional<SolidHit> Solid::first_hit(const Ray& ray, double from_mm, double to_mm) const {
+  const auto range = clip_to_box(ray, {from_mm, to_mm});
+  if (!range) return std::nullopt;
+  if (const auto height_mm = height_without_edges(ray, *range)) {
+    return enter(ray, *range, *height_mm, nullptr);
+  }
+  thread_local std::vector<Cut> cuts;  // kept: a heap call a ray would cost more than the ray
+  find_cuts(ray, *range, cuts);
   Interval piece{range->from_mm, 0.0};
   const Edge* entered_over = nullptr;
   for (const Cut& cut : cuts) {

@@ -51,6 +51,10 @@ class Solid {
     double from_mm;
     double to_mm;
   };
+  struct Cut {
+    double distance_mm;
+    const Edge* edge;
+  };
   static constexpr double kNoPart = -std::numeric_limits<double>::infinity();
 
   void add_edges(const Loop& loop);
@@ -60,6 +64,7 @@ class Solid {
   [[nodiscard]] std::optional<Interval> clip_to_box(const Ray& ray, Interval range) const noexcept;
   [[nodiscard]] std::optional<double> height_without_edges(const Ray& ray,
                                                            Interval range) const noexcept;
+  void find_cuts(const Ray& ray, Interval range, std::vector<Cut>& cuts) const;
   [[nodiscard]] std::optional<SolidHit> enter(const Ray& ray, Interval range, double height_mm,
                                               const Edge* edge) const noexcept;
 
