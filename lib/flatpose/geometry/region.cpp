@@ -1,0 +1,72 @@
+#include "flatpose/geometry/region.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatpose {
+namespace {
+
+bool polygon_contains(const Region& r, double x, double y) noexcept {
+  bool inside = false;
+  for (int i = 0, j = r.vertex_count - 1; i < r.vertex_count; j = i++) {
+    const double yi = r.vertex_y_mm[i];
+    const double yj = r.vertex_y_mm[j];
+    if ((yi > y) == (yj > y)) continue;
+    const double t = (y - yi) / (yj - yi);
+    if (x < r.vertex_x_mm[i] + t * (r.vertex_x_mm[j] - r.vertex_x_mm[i])) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
+
+bool Region::contains(double x, double y) const noexcept {
+  switch (kind) {
+    case Kind::kAll: return true;
+    case Kind::kCircle: {
+      const double dx = x - x_mm;
+      const double dy = y - y_mm;
+      return dx * dx + dy * dy <= radius_mm * radius_mm;
+    }
+    case Kind::kBox: {
+      const Box box = bounding_box(*this);
+      return x >= box.x0_mm && x <= box.x1_mm && y >= box.y0_mm && y <= box.y1_mm;
+    }
+    case Kind::kPolygon: return polygon_contains(*this, x, y);
+  }
+  return false;
+}
+
+Box bounding_box(const Region& r) noexcept {
+  if (r.kind == Region::Kind::kCircle) {
+    return {r.x_mm - r.radius_mm, r.y_mm - r.radius_mm, r.x_mm + r.radius_mm, r.y_mm + r.radius_mm};
+  }
+  Box box{r.vertex_x_mm[0], r.vertex_y_mm[0], r.vertex_x_mm[0], r.vertex_y_mm[0]};
+  for (int i = 1; i < r.vertex_count; ++i) {
+    box.x0_mm = std::min(box.x0_mm, r.vertex_x_mm[i]);
+    box.y0_mm = std::min(box.y0_mm, r.vertex_y_mm[i]);
+    box.x1_mm = std::max(box.x1_mm, r.vertex_x_mm[i]);
+    box.y1_mm = std::max(box.y1_mm, r.vertex_y_mm[i]);
+  }
+  return box;
+}
+
+bool is_valid(const Region& r) noexcept {
+  const int vertex_count_min = r.kind == Region::Kind::kBox ? 2 : 3;
+  switch (r.kind) {
+    case Region::Kind::kAll: return true;
+    case Region::Kind::kCircle:
+      return std::isfinite(r.x_mm) && std::isfinite(r.y_mm) && std::isfinite(r.radius_mm) &&
+             r.radius_mm > 0.0;
+    case Region::Kind::kBox:
+    case Region::Kind::kPolygon: break;
+  }
+  if (r.vertex_count < vertex_count_min || r.vertex_count > Region::kVertexCountMax) return false;
+  for (int i = 0; i < r.vertex_count; ++i) {
+    if (!std::isfinite(r.vertex_x_mm[i]) || !std::isfinite(r.vertex_y_mm[i])) return false;
+  }
+  const Box box = bounding_box(r);
+  return box.x1_mm > box.x0_mm && box.y1_mm > box.y0_mm;
+}
+
+}  // namespace flatpose

@@ -1,0 +1,65 @@
+#include "flatpose/locate/settings.hpp"
+
+#include <algorithm>
+
+namespace flatpose::locate {
+namespace {
+
+double bounded(double value, double low, double high) noexcept {
+  return std::max(low, std::min(value, high));
+}
+
+}  // namespace
+
+Settings derive_settings(const model::Template& part, const LocateConfig& config, double noise_mm,
+                         double pitch_mm, double cell_mm) noexcept {
+  Settings s;
+  const double coarse_mm = 2.0 * cell_mm;
+  const double step_mm = std::max(part.step_mm, noise_mm);
+
+  s.scene.noise_mm = noise_mm;
+  s.scene.pitch_mm = pitch_mm;
+  s.scene.step_mm = part.step_mm;
+  s.scene.method = config.method;
+
+  // A surface's height is believed within a few standard deviations and a little slope, but never
+  // to half a step.
+  const double height_tolerance_mm =
+      bounded(3.5 * noise_mm + 0.15 * cell_mm, 0.05 * cell_mm, 0.5 * step_mm);
+
+  // The angle's step lets the farthest point be off by half of what the chamfer images still see
+  // (kEdgeCostMax).
+  const double reach_mm = search::kEdgeCostMax / 3.0 * coarse_mm;
+  s.search.angle_step_rad = bounded(reach_mm / part.radius_mm, 0.02, 0.25);
+  s.search.max_tilt_rad = config.max_tilt_rad;
+  s.search.planarity_mm = 2.0 * noise_mm + 0.1 * cell_mm;
+  s.search.score.use_height = config.use_height;
+  s.search.score.use_directions = config.use_directions;
+  // The tilt read at the anchor is off by some 3 degrees at worst.
+  s.search.score.height_tolerance_mm =
+      bounded(0.05 * part.radius_mm + 3.0 * noise_mm, height_tolerance_mm,
+              std::max(0.9 * step_mm, height_tolerance_mm));
+
+  const double clearance_px = part.anchors[0].clearance_mm / coarse_mm;
+  s.tilt_radius_px = static_cast<int>(bounded(0.65 * clearance_px, 1.0, 8.0));
+
+  s.wide.edge_reach_mm = reach_mm;
+  s.wide.height_reach_mm = std::max(3.0 * height_tolerance_mm, 0.05 * part.radius_mm);
+  s.wide.normal_reach = 0.4;
+  s.wide.edge_sigma_mm = cell_mm;
+  s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
+  s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
+  s.narrow = s.wide;
+  s.narrow.contour_count = model::kContourPointCountMax / 2;
+  s.narrow.edge_reach_mm = 4.0 * cell_mm;
+  s.narrow.height_reach_mm = 2.0 * height_tolerance_mm;
+
+  s.polish.height_tolerance_mm = height_tolerance_mm;
+  s.polish.search_mm = 2.5 * cell_mm;
+
+  s.verify.height_tolerance_mm = height_tolerance_mm;
+  s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
+  return s;
+}
+
+}  // namespace flatpose::locate

@@ -1,0 +1,119 @@
+#include "flatpose/locate/verify.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatpose::locate {
+namespace {
+
+enum class Sight { kNothing, kAbove, kAt, kBelow };
+
+struct Cell {
+  int column = 0;
+  int row = 0;
+};
+
+Cell cell_at(const rectify::Grid& grid, double x_mm, double y_mm) noexcept {
+  return {static_cast<int>(std::floor(grid.column_of(x_mm) + 0.5)),
+          static_cast<int>(std::floor(grid.row_of(y_mm) + 0.5))};
+}
+
+// What stands at a place, judged by the cell of the 3x3 around it that comes nearest to the
+// expected height: a lost point or a cell's width at a contour decides nothing.
+Sight sight(const refine::FineImages& images, const Vec3& p_mm, double tolerance_mm) noexcept {
+  const Cell centre = cell_at(images.grid, p_mm.x, p_mm.y);
+  double nearest_mm = 0.0;
+  bool found = false;
+  for (int row = centre.row - 1; row <= centre.row + 1; ++row) {
+    for (int column = centre.column - 1; column <= centre.column + 1; ++column) {
+      if (!images.height_mm.contains(column, row)) continue;
+      const double above_mm = static_cast<double>(images.height_mm(column, row)) - p_mm.z;
+      if (std::isnan(above_mm)) continue;
+      if (!found || std::fabs(above_mm) < std::fabs(nearest_mm)) nearest_mm = above_mm;
+      found = true;
+    }
+  }
+  if (!found) return Sight::kNothing;
+  if (nearest_mm > tolerance_mm) return Sight::kAbove;
+  return nearest_mm < -tolerance_mm ? Sight::kBelow : Sight::kAt;
+}
+
+bool is_claimed(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
+                const Vec3& p_mm) noexcept {
+  if (claimed.empty()) return false;
+  const Cell cell = cell_at(images.grid, p_mm.x, p_mm.y);
+  return claimed.contains(cell.column, cell.row) && claimed(cell.column, cell.row) != 0;
+}
+
+bool has_edge(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
+              double tolerance_px) noexcept {
+  const Cell cell = cell_at(images.grid, p_mm.x, p_mm.y);
+  if (!images.height_mm.contains(cell.column, cell.row)) return false;
+  const int octant = image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
+  return images.edge_distance_third_px[octant](cell.column, cell.row) <= 3.0 * tolerance_px;
+}
+
+// Where the contour is to be seen from: a little inside it the surface, a little outside something
+// lower.
+constexpr double kProbe_px = 2.5;
+
+void judge_contour(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
+                   const Vec3& probe_mm, const VerifyConfig& config, Evidence* evidence) noexcept {
+  const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
+  if (inside == Sight::kNothing || inside == Sight::kAbove) return;
+  const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
+  if (outside == Sight::kAbove) return;
+  const bool edge = has_edge(images, p_mm, falling, config.edge_tolerance_px);
+  if (outside == Sight::kNothing && !edge) return;  // the scan ends or is dark here
+  ++evidence->visible_count;
+  if (inside == Sight::kAt && edge) ++evidence->confirmed_count;
+}
+
+double share(const Evidence& evidence) noexcept {
+  return evidence.visible_count > 0
+             ? static_cast<double>(evidence.confirmed_count) / evidence.visible_count
+             : 0.0;
+}
+
+}  // namespace
+
+Verification verify(const model::Template& part, const refine::FineImages& images,
+                    ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
+                    const VerifyConfig& config) noexcept {
+  Verification out;
+  for (const model::SurfacePoint& p : part.surface_points()) {
+    const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
+    const Sight seen = sight(images, q_mm, config.height_tolerance_mm);
+    if (seen == Sight::kNothing || seen == Sight::kAbove) continue;
+    ++out.surface.visible_count;
+    if (is_claimed(images, claimed, q_mm)) ++out.surface.claimed_count;
+    if (seen == Sight::kAt) ++out.surface.confirmed_count;
+  }
+  const double probe_mm = kProbe_px * images.grid.cell_mm;
+  for (const model::ContourPoint& p : part.contour_points()) {
+    const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
+    const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
+    judge_contour(images, q_mm, falling, probe_mm * falling, config, &out.contour);
+  }
+  out.visible = static_cast<double>(out.surface.visible_count) / part.surface_count;
+  out.score = 0.5 * (share(out.surface) + share(out.contour));
+  return out;
+}
+
+void claim(const model::Template& part, const refine::FineImages& images, const Pose& work_T_object,
+           const VerifyConfig& config, ImageView<std::uint8_t> claimed) noexcept {
+  const double spacing_mm = std::sqrt(part.area_mm2 / std::max(1, part.surface_count));
+  const int reach_px = static_cast<int>(0.75 * spacing_mm / images.grid.cell_mm) + 1;
+  for (const model::SurfacePoint& p : part.surface_points()) {
+    const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
+    if (sight(images, q_mm, config.height_tolerance_mm) != Sight::kAt) continue;
+    const Cell centre = cell_at(images.grid, q_mm.x, q_mm.y);
+    for (int row = centre.row - reach_px; row <= centre.row + reach_px; ++row) {
+      for (int column = centre.column - reach_px; column <= centre.column + reach_px; ++column) {
+        if (claimed.contains(column, row)) claimed(column, row) = 1;
+      }
+    }
+  }
+}
+
+}  // namespace flatpose::locate

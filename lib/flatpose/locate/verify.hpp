@@ -1,0 +1,45 @@
+#pragma once
+// How much of the template a pose explains, knowing what the sensor could not see. A point that
+// lies outside the field, on missing data or under something higher says nothing; one that could be
+// seen either confirms or contradicts.
+
+#include <cstdint>
+
+#include "flatpose/core/image_view.hpp"
+#include "flatpose/model/template.hpp"
+#include "flatpose/refine/fine_images.hpp"
+
+namespace flatpose::locate {
+
+struct VerifyConfig {
+  double height_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
+  double edge_tolerance_px =
+      2.0;  ///< A contour point this near to an edge that falls its way is confirmed.
+};
+
+struct Evidence {
+  int visible_count = 0;
+  int confirmed_count = 0;
+  int claimed_count = 0;  ///< Of the visible: on cells that an accepted match already explains.
+};
+
+struct Verification {
+  Evidence surface;
+  Evidence contour;
+  double visible = 0.0;  ///< Share of the surface that the scan could show.
+  double score =
+      0.0;  ///< Confirmed share of what could be seen, surface and contour weighing the same.
+};
+
+/// Holds the dense template at a pose against the scan.
+/// Shape: `claimed` is of the fine grid, nonzero where accepted matches lie; it may be empty.
+/// Cost: linear in the template's points.  Memory: none.  Thread: reentrant.
+[[nodiscard]] Verification verify(const model::Template& part, const refine::FineImages& images,
+                                  ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
+                                  const VerifyConfig& config) noexcept;
+
+/// Marks the cells under the part's visible surface as explained.
+void claim(const model::Template& part, const refine::FineImages& images, const Pose& work_T_object,
+           const VerifyConfig& config, ImageView<std::uint8_t> claimed) noexcept;
+
+}  // namespace flatpose::locate

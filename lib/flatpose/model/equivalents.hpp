@@ -1,0 +1,23 @@
+#pragma once
+// Which of a symmetric part's equivalent poses is reported: the one with the smallest turn from
+// object x to the face's x.
+
+#include "flatpose/geometry/pose.hpp"
+#include "flatpose/model/template.hpp"
+
+namespace flatpose::model {
+
+/// The pose turned by `angle_rad` about the part's axis of symmetry.
+[[nodiscard]] Pose turned_about_symmetry(const Pose& face_T_object, const Symmetry& symmetry,
+                                         double angle_rad) noexcept;
+
+/// The turn about object z that would lay object x onto the face's x; 0 when the face's x stands on
+/// the surface.
+[[nodiscard]] double turn_to_face_x_rad(const Rotation& face_R_object) noexcept;
+
+/// The equivalent pose whose object x is turned least from the face's x. Unchanged for a part
+/// without symmetry.
+[[nodiscard]] Pose canonical_equivalent(const Pose& face_T_object,
+                                        const Symmetry& symmetry) noexcept;
+
+}  // namespace flatpose::model

@@ -1,0 +1,40 @@
+#pragma once
+// The last step, on the scan's own points instead of the resampled map: z and tilt from every raw
+// point inside the footprint, x, y and phi from where scan lines leave the surface. Both are small
+// robust least squares, solved in turn.
+
+#include <span>
+
+#include "flatpose/model/template.hpp"
+#include "flatpose/refine/levenberg_marquardt.hpp"
+#include "flatpose/refine/raw_contour.hpp"
+#include "flatpose/refine/raw_scan.hpp"
+
+namespace flatpose::refine {
+
+struct PolishConfig {
+  double height_tolerance_mm =
+      1.0;                 ///< Points farther off the surface than this are not the part's.
+  double search_mm = 2.0;  ///< How far the contour may lie from where the first refinement left it.
+  int round_count = 3;
+};
+
+struct PolishResult {
+  Pose work_T_object;
+  Matrix<6> covariance =
+      Matrix<6>::Zero();      ///< Of (turn, shift) in the object's own axes; rad, mm.
+  bool turn_is_free = false;  ///< Full symmetry: no turn about z was fitted.
+  double edge_rms_mm = 0.0;
+  double surface_rms_mm = 0.0;
+  int crossing_count = 0;
+  int point_count = 0;
+};
+
+/// Fits the pose to the raw points.  Memory: `crossings` holds one entry a contour point of the
+/// template. Fails: kTooFewPoints when the surface or the contour is hardly there; kShapeMismatch
+/// (crossings too short). Thread: reentrant.
+[[nodiscard]] Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
+                                          const Pose& work_T_object, const PolishConfig& config,
+                                          std::span<Crossing> crossings) noexcept;
+
+}  // namespace flatpose::refine

@@ -1,0 +1,135 @@
+#include "flatpose/refine/raw_contour.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatpose::refine {
+namespace {
+
+constexpr int kWalkLengthMax = 64;
+
+enum class Standing { kOn, kBelow, kAbove, kMissing };
+
+// A walk along one scan line in the object's frame.
+class Line {
+ public:
+  Line(const RawScan& raw, const Pose& object_T_scan, double surface_z_mm,
+       double tolerance_mm) noexcept
+      : raw_(raw),
+        object_T_scan_(object_T_scan),
+        surface_z_mm_(surface_z_mm),
+        tolerance_mm_(tolerance_mm) {}
+
+  Standing at(Pixel pixel, Vec3* p_object_mm) const noexcept {
+    if (!raw_.scan.contains(pixel.column, pixel.row)) return Standing::kMissing;
+    const Vec3 p_scan_mm = raw_.scan(pixel.column, pixel.row);
+    if (!is_valid(p_scan_mm)) return Standing::kMissing;
+    *p_object_mm = object_T_scan_ * p_scan_mm;
+    const double above_mm = p_object_mm->z - surface_z_mm_;
+    if (above_mm > tolerance_mm_) return Standing::kAbove;
+    return above_mm < -tolerance_mm_ ? Standing::kBelow : Standing::kOn;
+  }
+
+ private:
+  const RawScan& raw_;
+  const Pose& object_T_scan_;
+  double surface_z_mm_;
+  double tolerance_mm_;
+};
+
+struct Step {
+  int dcolumn = 0;
+  int drow = 0;
+  double dx_mm = 0.0;  // in the object's plane
+  double dy_mm = 0.0;
+};
+
+// The step from the pixel to a neighbour on the surface, on one side or the other.
+bool neighbour_step(const Line& line, Pixel at, const Vec3& p_mm, int dcolumn, int drow,
+                    Step* step) noexcept {
+  Vec3 q_mm;
+  for (const int side : {1, -1}) {
+    if (line.at({at.column + side * dcolumn, at.row + side * drow}, &q_mm) != Standing::kOn)
+      continue;
+    *step = {dcolumn, drow, side * (q_mm.x - p_mm.x), side * (q_mm.y - p_mm.y)};
+    return true;
+  }
+  return false;
+}
+
+// The scan direction that leads outward most straightly.
+bool outward_step(const Line& line, Pixel at, const Vec3& p_mm, double nx, double ny,
+                  Step* best) noexcept {
+  constexpr double kCosineMin = 0.6;
+  double best_cosine = kCosineMin;
+  bool found = false;
+  for (const bool along_row : {true, false}) {
+    Step step;
+    if (!neighbour_step(line, at, p_mm, along_row ? 1 : 0, along_row ? 0 : 1, &step)) continue;
+    const double length_mm = std::sqrt(step.dx_mm * step.dx_mm + step.dy_mm * step.dy_mm);
+    if (!(length_mm > 0.0)) continue;
+    const double cosine = (step.dx_mm * nx + step.dy_mm * ny) / length_mm;
+    if (std::fabs(cosine) <= best_cosine) continue;
+    best_cosine = std::fabs(cosine);
+    found = true;
+    *best = cosine > 0.0 ? step : Step{-step.dcolumn, -step.drow, -step.dx_mm, -step.dy_mm};
+  }
+  return found;
+}
+
+// A pixel on the surface a little inside of the contour.
+bool find_start(const RawScan& raw, const Pose& work_T_object, const model::ContourPoint& c,
+                const Line& line, Pixel* pixel, Vec3* p_mm) noexcept {
+  for (const double inward_cells : {2.0, 3.0, 1.0, 4.0}) {
+    const double inward_mm = inward_cells * raw.map->grid.cell_mm;
+    const Vec3 probe_mm{c.x_mm - inward_mm * c.nx, c.y_mm - inward_mm * c.ny, c.z_mm};
+    *pixel = raw.pixel_under(work_T_object * probe_mm);
+    if (!pixel->is_none() && line.at(*pixel, p_mm) == Standing::kOn) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
+                          const model::ContourPoint& c, const RawContourConfig& config) noexcept {
+  const Pose object_T_scan = work_T_object.inverse() * raw.work_T_scan;
+  const Line line(raw, object_T_scan, c.z_mm, config.tolerance_mm);
+  Pixel pixel;
+  Vec3 last_mm;
+  Step step;
+  if (!find_start(raw, work_T_object, c, line, &pixel, &last_mm)) return {};
+  if (!outward_step(line, pixel, last_mm, c.nx, c.ny, &step)) return {};
+
+  const auto offset_of = [&c](double x_mm, double y_mm) {
+    return (x_mm - c.x_mm) * c.nx + (y_mm - c.y_mm) * c.ny;
+  };
+  for (int walked = 0; walked < kWalkLengthMax; ++walked) {
+    const Pixel next{pixel.column + step.dcolumn, pixel.row + step.drow};
+    const Pixel after{next.column + step.dcolumn, next.row + step.drow};
+    Vec3 next_mm;
+    Vec3 after_mm;
+    const Standing at_next = line.at(next, &next_mm);
+    if (at_next == Standing::kOn) {
+      pixel = next;
+      last_mm = next_mm;
+      if (offset_of(last_mm.x, last_mm.y) > config.search_mm) return {};
+      continue;
+    }
+    const Standing at_after = line.at(after, &after_mm);
+    if (at_after == Standing::kOn) {  // one lost or stray point does not end a surface
+      pixel = after;
+      last_mm = after_mm;
+      continue;
+    }
+    if (at_next == Standing::kAbove || at_after == Standing::kAbove)
+      return {};                                               // hidden, not ended
+    if (!raw.scan.contains(next.column, next.row)) return {};  // the field ends here
+    const double offset_mm = offset_of(last_mm.x + 0.5 * step.dx_mm, last_mm.y + 0.5 * step.dy_mm);
+    if (!(std::fabs(offset_mm) <= config.search_mm)) return {};
+    return {true, offset_mm};
+  }
+  return {};
+}
+
+}  // namespace flatpose::refine

@@ -1,0 +1,35 @@
+#pragma once
+// The tilt around every position (Ingberg 2015, 2.8.2), from a plane fitted to a square window
+// instead of averaged Sobel normals: the fit's residual also tells where there is no plane at all,
+// and only planar places are worth a hypothesis.
+//
+// For a full window of n = (2r+1)^2 cells with offsets i, j from its centre the normal equations
+// are diagonal:
+//   (1)  a = sum(i z) / S,  b = sum(j z) / S,  c = sum(z) / n,  S = sum(i^2) = n r (r+1) / 3
+//   (2)  residual^2 = sum(z^2) - n c^2 - S (a^2 + b^2)
+
+#include "flatpose/core/arena.hpp"
+#include "flatpose/core/image_view.hpp"
+#include "flatpose/core/status.hpp"
+
+namespace flatpose::search {
+
+inline constexpr int kTiltWindowRadiusMax_px = 12;
+
+struct TiltField {
+  ImageView<float> slope_x;  ///< dz/dx, dimensionless; NaN within the radius of the border.
+  ImageView<float> slope_y;
+  ImageView<float> plane_mm;  ///< Height of the fitted plane at the cell's centre.
+  ImageView<float> rms_mm;    ///< Residual of the fit.
+};
+
+[[nodiscard]] TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept;
+
+/// Fits a plane around every cell of a filled height map.
+/// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell.  Memory: `scratch` takes four
+/// rows-images of the map. Fails: kShapeMismatch, kInvalidArgument (radius
+/// outside 1..kTiltWindowRadiusMax_px), kOutOfMemory.  Thread: reentrant.
+[[nodiscard]] Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
+                                    Arena& scratch, TiltField& field) noexcept;
+
+}  // namespace flatpose::search
