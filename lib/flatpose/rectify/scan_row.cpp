@@ -82,26 +82,32 @@ void ScanToGrid::transform(const RangeImageView& scan, int row, const ScanRow& o
   }
 }
 
+Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept {
+  const Vec3& p = work_T_scan.position_mm;
+  const double position_mm[] = {p.x, p.y, p.z};
+  if (!all_finite(position_mm, 3) || !all_finite(work_T_scan.rotation.m.data(), 9))
+    return Status::kNotFinite;
+  if (scan.width_px < 0 || scan.height_px < 0) return Status::kInvalidArgument;
+  if (scan.size() == 0) return Status::kOk;
+  if (scan.x_mm == nullptr || scan.y_mm == nullptr || scan.z_mm == nullptr)
+    return Status::kInvalidArgument;
+  if (scan.pixel_stride_bytes % 4 != 0 || scan.row_stride_bytes % 4 != 0)
+    return Status::kInvalidArgument;
+  return scan.width_px > kScanSideMax_px || scan.height_px > kScanSideMax_px ||
+                 scan.size() > kScanPointsMax
+             ? Status::kTooLarge
+             : Status::kOk;
+}
+
 Status check_arguments(const RangeImageView& scan, const Pose& work_T_scan,
                        const HeightMap& out) noexcept {
+  if (const Status status = check_scan(scan, work_T_scan); status != Status::kOk) return status;
   const Grid& grid = out.grid;
-  const Vec3& p = work_T_scan.position_mm;
-  const double numbers[] = {p.x, p.y, p.z, grid.x0_mm, grid.y0_mm, grid.cell_mm};
-  if (!all_finite(numbers, 6) || !all_finite(work_T_scan.rotation.m.data(), 9))
-    return Status::kNotFinite;
+  const double numbers[] = {grid.x0_mm, grid.y0_mm, grid.cell_mm};
+  if (!all_finite(numbers, 3)) return Status::kNotFinite;
   if (grid.cell_mm <= 0.0 || grid.width_px <= 0 || grid.height_px <= 0)
     return Status::kInvalidArgument;
-  if (scan.width_px < 0 || scan.height_px < 0) return Status::kInvalidArgument;
-  if (scan.size() > 0) {
-    if (scan.x_mm == nullptr || scan.y_mm == nullptr || scan.z_mm == nullptr)
-      return Status::kInvalidArgument;
-    if (scan.pixel_stride_bytes % 4 != 0 || scan.row_stride_bytes % 4 != 0)
-      return Status::kInvalidArgument;
-  }
   if (grid.width_px > kSideMax_px || grid.height_px > kSideMax_px) return Status::kTooLarge;
-  if (scan.width_px > kScanSideMax_px || scan.height_px > kScanSideMax_px ||
-      scan.size() > kScanPointsMax)
-    return Status::kTooLarge;
   if (out.height_mm.width_px != grid.width_px || out.height_mm.height_px != grid.height_px ||
       !same_shape(out.height_mm, out.source_index))
     return Status::kShapeMismatch;

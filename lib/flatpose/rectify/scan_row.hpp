@@ -59,9 +59,13 @@ class ScanToGrid {
   double z_[4];
 };
 
-/// What must hold of the arguments of every method before it starts.
-/// Fails: kInvalidArgument (sizes, cell, strides), kNotFinite (pose, grid), kTooLarge,
-/// kShapeMismatch (an image is not as large as the grid).
+/// What must hold of a scan and its pose before anything starts.
+/// Fails: kNotFinite (pose), kInvalidArgument (size, planes, strides), kTooLarge.
+[[nodiscard]] Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept;
+
+/// What must hold of the arguments of every method, check_scan() included.
+/// Fails: also kInvalidArgument, kNotFinite and kTooLarge for the grid, kShapeMismatch when an
+/// image is not as large as the grid.
 [[nodiscard]] Status check_arguments(const RangeImageView& scan, const Pose& work_T_scan,
                                      const HeightMap& out) noexcept;
 

@@ -1,0 +1,235 @@
+#include "flatpose/rectify/survey.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "flatpose/rectify/scan_row.hpp"
+
+namespace flatpose::rectify {
+namespace {
+
+// ---- the pass over all points ----
+
+constexpr int kLanes = 8;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+template <class T>
+using Lanes = std::array<T, kLanes>;
+
+template <class T>
+constexpr Lanes<T> lanes_of(T value) {
+  Lanes<T> lanes{};
+  lanes.fill(value);
+  return lanes;
+}
+
+/// Count and box in lanes side by side, so that the loop runs on vectors and still sums up in one
+/// order everywhere.
+struct Extent {
+  std::array<Lanes<float>, 3> min_mm = {lanes_of(kInfinity), lanes_of(kInfinity),
+                                        lanes_of(kInfinity)};
+  std::array<Lanes<float>, 3> max_mm = {lanes_of(-kInfinity), lanes_of(-kInfinity),
+                                        lanes_of(-kInfinity)};
+  Lanes<std::int32_t> valid_count = lanes_of<std::int32_t>(0);
+  Lanes<std::int32_t> wild = lanes_of<std::int32_t>(0);  // not 0: an infinite or giant coordinate
+};
+
+struct Affine {
+  float m[12];  // three rows of rotation and translation
+};
+
+Affine affine_of(const Pose& pose) noexcept {
+  Affine affine{};
+  const double t[] = {pose.position_mm.x, pose.position_mm.y, pose.position_mm.z};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k)
+      affine.m[4 * i + k] = static_cast<float>(pose.rotation.m[3 * i + k]);
+    affine.m[4 * i + 3] = static_cast<float>(t[i]);
+  }
+  return affine;
+}
+
+bool is_wild(float value) noexcept {
+  return (std::fabs(value) > static_cast<float>(kCoordinateMax_mm)) & (value == value);
+}
+
+/// Adds the points of kLanes pixels. A missing point fails every comparison: it makes all three
+/// coordinates NaN.
+void add(const Affine& work_T_scan, const Lanes<float>& x, const Lanes<float>& y,
+         const Lanes<float>& z, Extent& extent) noexcept {
+  for (int i = 0; i < kLanes; ++i) {
+    const std::int32_t wild = is_wild(x[i]) | is_wild(y[i]) | is_wild(z[i]);
+    extent.wild[i] |= wild;
+    const float sum = x[i] + y[i] + z[i];
+    extent.valid_count[i] += sum == sum ? 1 : 0;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* const m = work_T_scan.m + 4 * k;
+    Lanes<float>& low = extent.min_mm[k];
+    Lanes<float>& high = extent.max_mm[k];
+    for (int i = 0; i < kLanes; ++i) {
+      const float w = m[0] * x[i] + m[1] * y[i] + m[2] * z[i] + m[3];
+      low[i] = w < low[i] ? w : low[i];
+      high[i] = w > high[i] ? w : high[i];
+    }
+  }
+}
+
+void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
+             Extent& extent) noexcept {
+  constexpr auto kFloatBytes = static_cast<std::ptrdiff_t>(sizeof(float));
+  const std::ptrdiff_t stride = scan.pixel_stride_bytes / kFloatBytes;
+  const std::ptrdiff_t skip = row * (scan.row_stride_bytes / kFloatBytes);
+  const float* xs = scan.x_mm + skip;
+  const float* ys = scan.y_mm + skip;
+  const float* zs = scan.z_mm + skip;
+  Lanes<float> x, y, z;
+  for (int c = 0; c < scan.width_px; c += kLanes) {
+    const int count = std::min(kLanes, scan.width_px - c);
+    if (count < kLanes) x = y = z = lanes_of(std::numeric_limits<float>::quiet_NaN());
+    for (int i = 0; i < count; ++i) {
+      x[i] = xs[i * stride];
+      y[i] = ys[i * stride];
+      z[i] = zs[i * stride];
+    }
+    add(work_T_scan, x, y, z, extent);
+    xs += kLanes * stride, ys += kLanes * stride, zs += kLanes * stride;
+  }
+}
+
+void write_extent(const Extent& extent, Survey& out) noexcept {
+  for (const std::int32_t count : extent.valid_count) out.valid_count += count;
+  if (out.valid_count == 0) return;
+  const auto low = [&](std::size_t k) {
+    return static_cast<double>(*std::min_element(extent.min_mm[k].begin(), extent.min_mm[k].end()));
+  };
+  const auto high = [&](std::size_t k) {
+    return static_cast<double>(*std::max_element(extent.max_mm[k].begin(), extent.max_mm[k].end()));
+  };
+  out.min_mm = {low(0), low(1), low(2)};
+  out.max_mm = {high(0), high(1), high(2)};
+  out.missing_share = 1.0 - static_cast<double>(out.valid_count) / out.point_count;
+}
+
+// ---- the sample ----
+
+constexpr int kSampleSide = 64;                                // rows and columns sampled, at least
+constexpr int kSampleSideMax = 2 * kSampleSide + 1;            // side / (side / 64) is below 128
+constexpr double kSigmaPerMedianDeviation = 1.4826;            // of a normal distribution
+constexpr double kSecondDifferenceSigmas = 2.449489742783178;  // sqrt(1 + 4 + 1)
+
+class Sample {
+ public:
+  explicit Sample(Arena& arena) noexcept
+      : values_(arena.take<float>(kSampleSideMax * kSampleSideMax)) {}
+
+  void add(double value) noexcept {
+    if (std::isfinite(value) && count_ < values_.size())
+      values_[count_++] = static_cast<float>(value);
+  }
+  /// 0 for none.
+  [[nodiscard]] double median() noexcept {
+    if (count_ == 0) return 0.0;
+    float* const middle = values_.data() + count_ / 2;
+    std::nth_element(values_.data(), middle, values_.data() + count_);
+    return static_cast<double>(*middle);
+  }
+
+ private:
+  std::span<float> values_;
+  std::size_t count_ = 0;
+};
+
+struct Samples {
+  Sample along_row, along_column, bend;
+  explicit Samples(Arena& arena) noexcept : along_row(arena), along_column(arena), bend(arena) {}
+};
+
+double distance_xy(const Vec3& a, const Vec3& b) noexcept {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+}
+
+void take_samples(const RangeImageView& scan, const Pose& work_T_scan, Samples& out) noexcept {
+  const int column_step = std::max(1, scan.width_px / kSampleSide);
+  const int row_step = std::max(1, scan.height_px / kSampleSide);
+  for (int r = 0; r < scan.height_px; r += row_step) {
+    // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
+    for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
+      const Vec3 p = work_T_scan * scan(c, r);
+      if (r + 1 < scan.height_px)
+        out.along_column.add(distance_xy(p, work_T_scan * scan(c, r + 1)));
+      if (c + 1 >= scan.width_px) continue;
+      const Vec3 next = work_T_scan * scan(c + 1, r);
+      out.along_row.add(distance_xy(p, next));
+      if (c > 0) {
+        const Vec3 last = work_T_scan * scan(c - 1, r);
+        out.bend.add(std::fabs(last.z - 2.0 * p.z + next.z));
+      }
+    }
+  }
+}
+
+bool is_within(double value, double low, double high) noexcept {
+  return value >= low && value <= high;
+}
+
+}  // namespace
+
+std::size_t survey_required_bytes() noexcept {
+  Arena arena = Arena::measuring();
+  (void)Samples(arena);
+  return arena.required_bytes();
+}
+
+Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
+                      Arena& scratch) noexcept {
+  if (const Status status = check_scan(scan, work_T_scan); status != Status::kOk) return status;
+  const ArenaScope scope(scratch);
+  Samples samples(scratch);
+  if (scratch.failed()) return Status::kOutOfMemory;
+  Survey result;
+  result.point_count = static_cast<int>(scan.size());
+  if (result.point_count == 0) return result;
+  const Affine affine = affine_of(work_T_scan);
+  Extent extent;
+  for (int r = 0; r < scan.height_px; ++r) add_row(scan, r, affine, extent);
+  for (const std::int32_t wild : extent.wild)
+    if (wild != 0) return Status::kNotFinite;
+  write_extent(extent, result);
+  take_samples(scan, work_T_scan, samples);
+  result.pitch_along_row_mm = samples.along_row.median();
+  result.pitch_along_column_mm = samples.along_column.median();
+  result.noise_sigma_mm =
+      kSigmaPerMedianDeviation / kSecondDifferenceSigmas * samples.bend.median();
+  return result;
+}
+
+Result<Grid> choose_grid(const Survey& survey, const GridConfig& config) noexcept {
+  const Region& region = config.region;
+  if (!is_within(config.cell_mm, 1e-6, 1e6) || !is_within(config.margin_mm, 0.0, 1e6) ||
+      !(region.x_min_mm <= region.x_max_mm) || !(region.y_min_mm <= region.y_max_mm))
+    return Status::kInvalidArgument;
+  if (survey.valid_count == 0) return Status::kTooFewPoints;
+  const double x_min_mm = std::max(survey.min_mm.x, region.x_min_mm);
+  const double y_min_mm = std::max(survey.min_mm.y, region.y_min_mm);
+  const double x_max_mm = std::min(survey.max_mm.x, region.x_max_mm);
+  const double y_max_mm = std::min(survey.max_mm.y, region.y_max_mm);
+  if (x_min_mm > x_max_mm || y_min_mm > y_max_mm) return Status::kTooFewPoints;
+  const double column_begin = std::floor((x_min_mm - config.margin_mm) / config.cell_mm);
+  const double row_begin = std::floor((y_min_mm - config.margin_mm) / config.cell_mm);
+  // One more than the last cell that holds a point, also one on its upper border.
+  const double width_px =
+      std::floor((x_max_mm + config.margin_mm) / config.cell_mm) + 1.0 - column_begin;
+  const double height_px =
+      std::floor((y_max_mm + config.margin_mm) / config.cell_mm) + 1.0 - row_begin;
+  if (!(width_px <= kSideMax_px) || !(height_px <= kSideMax_px) ||
+      !(width_px * height_px <= config.cells_max))
+    return Status::kTooLarge;
+  return Grid{(column_begin + 0.5) * config.cell_mm, (row_begin + 0.5) * config.cell_mm,
+              config.cell_mm, static_cast<int>(width_px), static_cast<int>(height_px)};
+}
+
+}  // namespace flatpose::rectify
