@@ -164,7 +164,8 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
   // Renaming onto a device would replace the device.
   if (exists && !S_ISREG(info.st_mode))
     throw InputError(path, kind_of(info.st_mode), "name a regular file");
-  if (exists && ::access(target.c_str(), W_OK) != 0) fail_writing(path, errno);
+  if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
+    fail_writing(path, errno);
 
   const std::string folder = folder_of(target);
   TemporaryFile temporary(path, folder);

@@ -12,6 +12,8 @@ namespace flatpose::port {
 namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+// The last chunk, which is the same in every PNG: length, name and checksum.
+constexpr std::string_view kEnd{"\0\0\0\0IEND\xae\x42\x60\x82", 12};
 constexpr std::uint64_t kDeflateGrowthMax = 1032;  // what zlib can pack at best
 constexpr std::size_t kTextChunkBytesMax = 8 * 1024 * 1024;
 
@@ -30,6 +32,10 @@ class PngReader {
     check(spng_set_chunk_limits(context, std::max(size_bytes_, kTextChunkBytesMax),
                                 std::max(size_bytes_, kTextChunkBytesMax)));
     check(spng_set_png_buffer(context, bytes.data(), bytes.size()));
+    // libspng does not read the last checksum, so it would not miss it.
+    if (as_text(bytes).rfind(kEnd) == std::string_view::npos)
+      throw InputError(path, "damaged PNG: it does not end as one",
+                       "copy the file again: it is damaged or cut off");
     check(spng_get_ihdr(context, &header_));
     check_shape(path, header_.width, header_.height, limits,
                 "save it as an image of rows and columns");
@@ -39,7 +45,7 @@ class PngReader {
 
   void decode(void* pixels, std::size_t size_bytes, int format, int flags) {
     check(spng_decode_image(context_.get(), pixels, size_bytes, format, flags));
-    check(spng_decode_chunks(context_.get()));  // to the end: a cut-off tail shows here
+    check(spng_decode_chunks(context_.get()));  // what follows the pixels, up to the last chunk
   }
 
   // A few bytes cannot hold a large image: memory is only taken for what can be there.

@@ -56,8 +56,14 @@ TEST(BadPcd, NamesTheLineOfAWrongShape) {
 }
 
 TEST(BadPcd, IsRefusedOverTheLimit) {
-  expect_refused(changed(&PcdLines::width, "2000001"),
-                 {"4000000 points", "--max-points to 4000002"});
+  PcdLines lines;
+  lines.width = "2001";
+  lines.height = "2000";
+  lines.points = "4002000";
+  expect_refused(lines.text(), {"limit of 4000000 points", "raise --max-points to 4002000"});
+  lines.width = "2000";
+  lines.points = "4000000";
+  expect_refused(lines.text(), {"48000000 bytes short"});
   expect_refused(changed(&PcdLines::width, "3"), {"limit of 5", "raise --max-points to 6"}, {5});
 }
 
@@ -81,7 +87,7 @@ TEST(BadPcd, TakesNoMemoryOnTheHeadersWord) {
 TEST(BadPcd, NamesTheLineOfWrongFields) {
   expect_refused(changed(&PcdLines::fields, "x y w"), {"line 3", "no field z"});
   expect_refused(changed(&PcdLines::fields, "x x z"), {"line 3", "second field x"});
-  expect_refused(changed(&PcdLines::fields, ""), {"line 3", "no field x"});
+  expect_refused(changed(&PcdLines::fields, ""), {"line 4", "more values than FIELDS"});
   expect_refused(changed(&PcdLines::size, "4 4 8"), {"line 5", "field z", "SIZE 8", "float32"});
   expect_refused(changed(&PcdLines::type, "F F I"), {"line 5", "field z", "TYPE I", "float32"});
   expect_refused(changed(&PcdLines::count, "1 2 1"), {"line 5", "field y", "COUNT 2"});

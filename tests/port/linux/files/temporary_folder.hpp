@@ -32,6 +32,7 @@ class TemporaryFolder {
   [[nodiscard]] std::string path(const std::string& name) const { return path_ + "/" + name; }
   [[nodiscard]] const std::string& path() const { return path_; }
   std::string write(const std::string& name, std::string_view bytes) const {
+    std::filesystem::remove(path(name));  // some file systems flush what is written over
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
   }
