@@ -16,8 +16,8 @@
 //     wall or gap of three cells keeps both of its contours.
 //
 // Limits: steps smeared over more than three cells lose strength; two parallel steps of one sign
-// fewer than three cells apart become one; there are no edges on the outermost ring of cells, and
-// those within five cells of it may be weaker.
+// fewer than three cells apart become one; there are no edges on the outermost ring of cells,
+// jumps within five cells of it may be weaker, and creases are not found there.
 
 #include <cstdint>
 #include <span>

@@ -6,6 +6,8 @@ namespace flatpose::image {
 namespace {
 
 constexpr float kFinite = 1e30F;
+constexpr float kNear_px = 2.0F;
+constexpr float kFar_px = 5.0F;
 constexpr float kTieFactor = 1.0F + 1e-4F;
 
 // The direction across the crease: the eigenvector of the matrix of second differences whose
@@ -33,13 +35,30 @@ struct Range {
   float high;
 };
 
+// Samples held back at the border would be taken for slopes further out.
+bool window_fits(const SlopeField& f, int column, int row) noexcept {
+  constexpr int kReach_px = static_cast<int>(kFar_px);
+  return column > kReach_px && row > kReach_px && column + kReach_px + 1 < f.height_mm.width_px &&
+         row + kReach_px + 1 < f.height_mm.height_px;
+}
+
 // Slopes up `n` on one side, at two distances: a jump nearby can spoil but one of them.
 Range side_climb(const SlopeField& f, Vec2f p, Vec2f n, float side) noexcept {
-  constexpr float kNear_px = 2.0F;
-  constexpr float kFar_px = 5.0F;
   const float a = f.climb_at(p + (side * kNear_px) * n, n);
   const float b = f.climb_at(p + (side * kFar_px) * n, n);
   return {std::min(a, b), std::max(a, b)};
+}
+
+constexpr float kSide_px = 3.0F;
+
+// Whether the heights beside the crease are those of its two slopes: near a jump they are not.
+bool follows_two_planes(const SlopeField& f, Vec2f p, Vec2f n, float slope_a, float slope_b,
+                        float margin_mm) noexcept {
+  const float z = f.mean_height_at(p, n);
+  const float rise_b = f.mean_height_at(p + kSide_px * n, n) - z;
+  const float rise_a = z - f.mean_height_at(p - kSide_px * n, n);
+  return std::fabs(rise_a - kSide_px * slope_a) <= margin_mm &&
+         std::fabs(rise_b - kSide_px * slope_b) <= margin_mm;
 }
 
 float tan_between(float a, float b) noexcept {
@@ -51,6 +70,7 @@ float tan_between(float a, float b) noexcept {
 
 CreaseTest test_crease(const SlopeField& f, int column, int row, float cell_mm,
                        float jump_low_mm) noexcept {
+  if (!window_fits(f, column, row)) return {};
   const Vec2f p{static_cast<float>(column), static_cast<float>(row)};
   const Vec2f n = across(f, column, row);
   if (!(norm(n) > 0.0F)) return {};
@@ -67,13 +87,8 @@ CreaseTest test_crease(const SlopeField& f, int column, int row, float cell_mm,
   if (!rises && !(b.high < a.low)) return {};
   const float slope_a = rises ? a.high : a.low;
   const float slope_b = rises ? b.low : b.high;
-  // At a jump the slope overshoots both sides.
-  const float margin = jump_low_mm / kCreaseReach_px / 2.0F;
-  if (m[2] > std::max(slope_a, slope_b) + margin || m[2] < std::min(slope_a, slope_b) - margin) {
-    return {};
-  }
-  constexpr float kSide_px = 3.0F;
-  const bool falls = f.mean_height_at(p + kSide_px * n, n) <= f.mean_height_at(p - kSide_px * n, n);
+  if (!follows_two_planes(f, p, n, slope_a, slope_b, 0.5F * jump_low_mm)) return {};
+  const bool falls = f.height_at(p + kSide_px * n) <= f.height_at(p - kSide_px * n);
   const Vec2f fall = falls ? n : -1.0F * n;
   const float bend = before - 2.0F * here + after;
   const float offset = bend < 0.0F ? std::clamp(0.5F * (before - after) / bend, -1.0F, 1.0F) : 0.0F;

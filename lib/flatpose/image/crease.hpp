@@ -9,7 +9,7 @@ namespace flatpose::image {
 /// Distance at which slopes before and after are compared to find candidates.
 inline constexpr int kCreaseReach_px = 2;
 
-/// A crease's change of slope and where it is; turn_rad_tan < 0 when the cell is no crease.
+/// A crease's change of slope and where it is; turn_tan < 0 when the cell is no crease.
 struct CreaseTest {
   float turn_tan = -1.0F;  ///< Tangent of the angle between the two sides; huge from 90 deg on.
   EdgePoint point;         ///< As it goes out, its kind too.
