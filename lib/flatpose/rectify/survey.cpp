@@ -118,7 +118,7 @@ void write_extent(const Extent& extent, Survey& out) noexcept {
 
 constexpr int kSampleSide = 64;                                // rows and columns sampled, at least
 constexpr int kSampleSideMax = 2 * kSampleSide + 1;            // side / (side / 64) is below 128
-constexpr double kSigmaPerMedianDeviation = 1.4826;            // of a normal distribution
+constexpr double kLowerHalfMean_sigma = 0.32465;               // of a normal distribution
 constexpr double kSecondDifferenceSigmas = 2.449489742783178;  // sqrt(1 + 4 + 1)
 
 class Sample {
@@ -138,18 +138,46 @@ class Sample {
     return static_cast<double>(*middle);
   }
 
+  /// Mean of the smaller half; 0 for none.
+  [[nodiscard]] double lower_half_mean() noexcept {
+    if (count_ == 0) return 0.0;
+    const std::size_t half = (count_ + 1) / 2;
+    std::nth_element(values_.data(), values_.data() + half - 1, values_.data() + count_);
+    // The sum must not depend on how nth_element left the order: count in whole nanometres.
+    constexpr double kSteps_per_mm = 1e6;
+    constexpr double kMax_mm = 1e6;
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < half; ++i)
+      sum += static_cast<std::int64_t>(std::min(static_cast<double>(values_[i]), kMax_mm) *
+                                       kSteps_per_mm);
+    return static_cast<double>(sum) / kSteps_per_mm / static_cast<double>(half);
+  }
+
  private:
   std::span<float> values_;
   std::size_t count_ = 0;
 };
 
 struct Samples {
-  Sample along_row, along_column, bend;
-  explicit Samples(Arena& arena) noexcept : along_row(arena), along_column(arena), bend(arena) {}
+  Sample along_row, along_column, bend_along_row, bend_along_column;
+  explicit Samples(Arena& arena) noexcept
+      : along_row(arena), along_column(arena), bend_along_row(arena), bend_along_column(arena) {}
 };
 
 double distance_xy(const Vec3& a, const Vec3& b) noexcept {
   return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+}
+
+/// The step from pixel p to the next along a direction, and the bend there.
+void sample_along(const RangeImageView& scan, const Pose& work_T_scan, int column, int row,
+                  int right, int down, Sample& step, Sample& bend) noexcept {
+  if (!scan.contains(column + right, row + down)) return;
+  const Vec3 p = work_T_scan * scan(column, row);
+  const Vec3 next = work_T_scan * scan(column + right, row + down);
+  step.add(distance_xy(p, next));
+  if (!scan.contains(column - right, row - down)) return;
+  const Vec3 last = work_T_scan * scan(column - right, row - down);
+  bend.add(std::fabs(last.z - 2.0 * p.z + next.z));
 }
 
 void take_samples(const RangeImageView& scan, const Pose& work_T_scan, Samples& out) noexcept {
@@ -158,16 +186,8 @@ void take_samples(const RangeImageView& scan, const Pose& work_T_scan, Samples& 
   for (int r = 0; r < scan.height_px; r += row_step) {
     // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
     for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
-      const Vec3 p = work_T_scan * scan(c, r);
-      if (r + 1 < scan.height_px)
-        out.along_column.add(distance_xy(p, work_T_scan * scan(c, r + 1)));
-      if (c + 1 >= scan.width_px) continue;
-      const Vec3 next = work_T_scan * scan(c + 1, r);
-      out.along_row.add(distance_xy(p, next));
-      if (c > 0) {
-        const Vec3 last = work_T_scan * scan(c - 1, r);
-        out.bend.add(std::fabs(last.z - 2.0 * p.z + next.z));
-      }
+      sample_along(scan, work_T_scan, c, r, 1, 0, out.along_row, out.bend_along_row);
+      sample_along(scan, work_T_scan, c, r, 0, 1, out.along_column, out.bend_along_column);
     }
   }
 }
@@ -202,8 +222,9 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
   take_samples(scan, work_T_scan, samples);
   result.pitch_along_row_mm = samples.along_row.median();
   result.pitch_along_column_mm = samples.along_column.median();
-  result.noise_sigma_mm =
-      kSigmaPerMedianDeviation / kSecondDifferenceSigmas * samples.bend.median();
+  result.noise_sigma_mm = std::max(samples.bend_along_row.lower_half_mean(),
+                                   samples.bend_along_column.lower_half_mean()) /
+                          (kLowerHalfMean_sigma * kSecondDifferenceSigmas);
   return result;
 }
 

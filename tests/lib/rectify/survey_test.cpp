@@ -26,7 +26,7 @@ TEST(Survey, MeasuresPitchNoiseAndLossDespiteJumps) {
   for (const double sigma_mm : {0.05, 0.4}) {
     const Pose scan_T_work = looking_down(400);
     const Scan scan(300, 200, scan_T_work, [&](int c, int r) {
-      const double block_mm = (c / 30 + r / 30) % 2 == 0 ? 0.0 : 9.0;
+      const double block_mm = (c / 100 + r / 100) % 2 == 0 ? 0.0 : 9.0;
       Vec3 p{0.7 * c, 1.3 * r, 0.2 * (0.7 * c) + block_mm + normal(random, sigma_mm)};
       if (random() % 10 == 0) p.z = std::nan("");
       return p;
@@ -39,6 +39,31 @@ TEST(Survey, MeasuresPitchNoiseAndLossDespiteJumps) {
     EXPECT_NEAR(result->missing_share, 0.1, 0.01);
     EXPECT_EQ(result->point_count, 60000);
     EXPECT_EQ(result->valid_count, std::lround(60000 * (1 - result->missing_share)));
+  }
+}
+
+TEST(Survey, SeesTheNoiseThatASensorSmoothsAlongItsLine) {
+  for (const bool along_rows : {true, false}) {
+    std::mt19937 random(3);
+    std::vector<double> raw_mm(302 * 302);
+    for (double& z_mm : raw_mm) z_mm = normal(random, 0.3);
+    const int lag = along_rows ? 1 : 302;
+    const Scan scan(300, 300, {}, [&](int c, int r) {
+      const double* const z_mm = &raw_mm[(r + 1) * 302 + c + 1];
+      return Vec3{1.0 * c, 1.0 * r, (z_mm[-lag] + z_mm[0] + z_mm[lag]) / 3.0};
+    });
+    EXPECT_NEAR(survey_of(scan)->noise_sigma_mm, 0.3 / std::sqrt(3.0), 0.01);
+  }
+}
+
+TEST(Survey, NoiseStaysCloseWhenHeightsComeInSteps) {
+  std::mt19937 random(9);
+  for (const double step_mm : {0.03, 0.06, 0.1}) {
+    const Scan scan(300, 300, {}, [&](int c, int r) {
+      const double z_mm = normal(random, 0.1) + 0.013 * c;
+      return Vec3{1.0 * c, 1.0 * r, step_mm * std::floor(z_mm / step_mm + 0.5)};
+    });
+    EXPECT_NEAR(survey_of(scan)->noise_sigma_mm, 0.1, 0.02) << step_mm;
   }
 }
 
