@@ -38,9 +38,10 @@ struct RobustLoss {
     if (kind == LossKind::kTukey) {
       const double full = scale * scale / 6.0;
       if (std::fabs(residual) > scale) return {full, 0.0};
-      const double u = 1.0 - square / (scale * scale);
-      // 1 - u^3 written so that no digits cancel for small residuals.
-      return {full * (1.0 - u) * (1.0 + u + u * u), u * u};
+      const double ratio = square / (scale * scale);
+      const double u = 1.0 - ratio;
+      // 1 - u^3 = (1 - u) (1 + u + u^2): no digits cancel for small residuals.
+      return {full * ratio * (1.0 + u + u * u), u * u};
     }
     return {0.5 * square, 1.0};
   }

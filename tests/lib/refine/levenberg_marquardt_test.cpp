@@ -1,14 +1,14 @@
 #define EIGEN_RUNTIME_NO_MALLOC
 #include "flatpose/refine/levenberg_marquardt.hpp"
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <new>
 #include <vector>
@@ -16,6 +16,7 @@
 #include "flatpose/geometry/pose.hpp"
 #include "tests/lib/autodiff/dual_transcendental.hpp"
 #include "tests/lib/autodiff/random_expression.hpp"
+#include "tests/lib/refine/ceres_judge.hpp"
 
 namespace {
 int new_count = 0;
@@ -36,16 +37,17 @@ using autodiff::Random;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A problem from a callable, so that each test shows its residuals.
-template <int N, class Function>
+/// A problem from a callable, so that each test shows its residuals; of one type, so that the
+/// solver is compiled once.
+template <int N>
 struct ProblemOf {
-  Function function;
+  std::function<bool(const Vector<N>&, NormalEquations<N>*)> function;
   bool evaluate(const Vector<N>& x, NormalEquations<N>* equations) const noexcept {
     return function(x, equations);
   }
 };
 template <int N, class Function>
-ProblemOf<N, Function> problem_of(Function function) {
+ProblemOf<N> problem_of(Function function) {
   return {function};
 }
 
@@ -88,7 +90,7 @@ TEST(RobustLoss, WeightIsTheSlopeOfTheCostOverTheResidual) {
 }
 
 template <int N>
-void expect_linear_algebra_equals_eigen(Random& random) {
+void expect_solution_and_decomposition(Random& random) {
   Matrix<N> m;
   for (int i = 0; i < N * N; ++i) m.data()[i] = random.uniform(-1, 1);
   const Matrix<N> a = m * m.transpose() + 0.01 * Matrix<N>::Identity();
@@ -97,22 +99,19 @@ void expect_linear_algebra_equals_eigen(Random& random) {
   ASSERT_TRUE(solve_positive_definite<N>(a, b, &x));
   EXPECT_LT((a * x - b).norm(), 1e-12 * (1.0 + x.norm()));
 
-  const Eigen::SelfAdjointEigenSolver<Matrix<N>> peer(a);
-  Eigenvalues<N> eigen = symmetric_eigenvalues<N>(a);
+  const Eigenvalues<N> eigen = symmetric_eigenvalues<N>(a);
   EXPECT_LT((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a).norm(),
             1e-13 * (1.0 + a.norm()));
   EXPECT_LT((eigen.vectors * eigen.vectors.transpose() - Matrix<N>::Identity()).norm(), 1e-13);
-  std::sort(eigen.values.data(), eigen.values.data() + N);
-  EXPECT_LT((eigen.values - peer.eigenvalues()).norm(), 1e-13 * (1.0 + a.norm()));
 }
 
-TEST(SmallMatrix, SolvesAndDecomposesAsEigenDoes) {
+TEST(SmallMatrix, SolvesAndDecomposes) {
   Random random(1);
   for (int k = 0; k < 200; ++k) {
-    expect_linear_algebra_equals_eigen<1>(random);
-    expect_linear_algebra_equals_eigen<2>(random);
-    expect_linear_algebra_equals_eigen<6>(random);
-    expect_linear_algebra_equals_eigen<7>(random);
+    expect_solution_and_decomposition<1>(random);
+    expect_solution_and_decomposition<2>(random);
+    expect_solution_and_decomposition<6>(random);
+    expect_solution_and_decomposition<7>(random);
   }
 }
 
@@ -376,36 +375,31 @@ struct RotationProblem {
   }
 };
 
-TEST(Minimize, FindsOnTheManifoldOfRotationsWhatTheClosedFormFinds) {
+TEST(Minimize, FindsOnTheManifoldOfRotationsThePolarFactor) {
   Random random(4);
   for (int k = 0; k < 50; ++k) {
     RotationProblem problem;
     const Vector<3> v = random_vector<3>(random, 1.2);
     const Rotation truth = rotation_from_vector({v[0], v[1], v[2]});
-    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    Matrix<3> products = Matrix<3>::Zero();
     for (int i = 0; i < 12; ++i) {
       const Vector<3> p = random_vector<3>(random, 10.0), noise = random_vector<3>(random, 0.5);
       problem.from.push_back({p[0], p[1], p[2]});
       problem.to.push_back(truth * problem.from.back() + Vec3{noise[0], noise[1], noise[2]});
       const Vec3& to = problem.to.back();
-      products += Eigen::Vector3d(to.x, to.y, to.z) * p.transpose();
+      products += Vector<3>(to.x, to.y, to.z) * p.transpose();
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products,
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d best = svd.matrixU() * svd.matrixV().transpose();  // Kabsch
     const auto minimum = minimize<3>(problem, Rotation{});
     ASSERT_TRUE(is_converged(minimum.termination));
-    for (int i = 0; i < 9; ++i) EXPECT_NEAR(minimum.x.m[i], best(i / 3, i % 3), 1e-7) << k;
+    // The best turn is the orthogonal factor of the sum of to from^T: what is left after it is
+    // symmetric and positive definite, and no other turn does that (Horn 1988).
+    const Matrix<3> best = Eigen::Map<const Matrix<3>>(minimum.x.m.data());  // transposed
+    const Matrix<3> left = best * products;
+    EXPECT_LT((left - left.transpose()).norm(), 1e-6 * left.norm()) << k;
+    Vector<3> unused;
+    EXPECT_TRUE(solve_positive_definite<3>(left, Vector<3>::Zero(), &unused)) << k;
   }
 }
-
-struct DecayModel {
-  template <class T>
-  static T at(const T& height, const T& rate, const T& floor, double x) {
-    using std::exp;
-    return height * exp(-rate * x) + floor;
-  }
-};
 
 struct Decay {  // y = height exp(-rate x) + floor, with outliers
   static constexpr int kCount = 60;
@@ -415,51 +409,29 @@ struct Decay {  // y = height exp(-rate x) + floor, with outliers
   Decay(Random& random, const Vector<3>& truth) {
     for (int k = 0; k < kCount; ++k) {
       x[k] = 0.1 * k;
-      y[k] = DecayModel::at(truth[0], truth[1], truth[2], x[k]) + random.uniform(-0.05, 0.05);
+      y[k] = truth[0] * std::exp(-truth[1] * x[k]) + truth[2] + random.uniform(-0.05, 0.05);
       if (random.below(6) == 0) y[k] += random.uniform(-3.0, 3.0);
     }
   }
+  [[nodiscard]] autodiff::Dual<3> residual(const double* p, int k) const noexcept {
+    using autodiff::seed;
+    return seed<3>(p[0], 0) * exp(-seed<3>(p[1], 1) * x[k]) + seed<3>(p[2], 2) - y[k];
+  }
   bool evaluate(const Vector<3>& p, NormalEquations<3>* equations) const noexcept {
-    using D = autodiff::Dual<3>;
-    const D a = autodiff::seed<3>(p[0], 0), b = autodiff::seed<3>(p[1], 1),
-            c = autodiff::seed<3>(p[2], 2);
-    for (int k = 0; k < kCount; ++k)
-      equations->add(DecayModel::at<D>(a, b, c, x[k]) - y[k], 1.0, loss);
+    for (int k = 0; k < kCount; ++k) equations->add(residual(p.data(), k), 1.0, loss);
     return true;
   }
 };
 
-struct CeresDecayResidual {
-  double x, y;
-  template <class T>
-  bool operator()(const T* p, T* residual) const {
-    residual[0] = DecayModel::at<T>(p[0], p[1], p[2], x) - y;
+CeresOutcome solve_with_ceres(const Decay& decay, const Vector<3>& start) {
+  CeresTask task{Decay::kCount, {start[0], start[1], start[2]}, decay.loss, {}};
+  task.evaluate = [&decay](const double* p, int k, double* residual, double* row) {
+    const autodiff::Dual<3> at = decay.residual(p, k);
+    *residual = at.value;
+    std::copy(at.derivative.begin(), at.derivative.end(), row);
     return true;
-  }
-};
-
-Vector<3> solve_with_ceres(const Decay& decay, const Vector<3>& start, int* iteration_count) {
-  ceres::Problem problem;
-  Vector<3> p = start;
-  for (int k = 0; k < Decay::kCount; ++k) {
-    ceres::LossFunction* loss =
-        decay.loss.kind == LossKind::kHuber
-            ? static_cast<ceres::LossFunction*>(new ceres::HuberLoss(decay.loss.scale))
-            : new ceres::TukeyLoss(decay.loss.scale);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresDecayResidual, 1, 3>(
-                                 new CeresDecayResidual{decay.x[k], decay.y[k]}),
-                             loss, p.data());
-  }
-  ceres::Solver::Options options;
-  options.max_num_iterations = 500;
-  options.function_tolerance = 1e-15;
-  options.gradient_tolerance = 1e-13;
-  options.parameter_tolerance = 1e-13;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  *iteration_count += static_cast<int>(summary.iterations.size()) - 1;
-  return p;
+  };
+  return refine::solve_with_ceres(task);
 }
 
 TEST(Minimize, FindsTheMinimumOfCeresOnRandomRobustProblems) {
@@ -475,11 +447,14 @@ TEST(Minimize, FindsTheMinimumOfCeresOnRandomRobustProblems) {
     for (const RobustLoss loss : {RobustLoss::huber(0.1), RobustLoss::tukey(0.5)}) {
       decay.loss = loss;
       const auto ours = minimize<3>(decay, start, config);
-      const Vector<3> theirs = solve_with_ceres(decay, start, &iteration_count_ceres);
+      const CeresOutcome ceres = solve_with_ceres(decay, start);
+      const Vector<3> theirs(ceres.x.data());
       iteration_count += ours.iteration_count;
+      iteration_count_ceres += ceres.iteration_count;
       ASSERT_TRUE(is_converged(ours.termination)) << k;
+      EXPECT_NEAR(ours.cost_end, ceres.cost, 1e-9 * ceres.cost) << k;
       EXPECT_LT((ours.x - theirs).norm(), 1e-6 * theirs.norm()) << k;
-      EXPECT_LT((ours.x - truth).norm(), 0.15) << k;
+      EXPECT_LT((ours.x - truth).norm(), 0.3) << k;
       EXPECT_LT(ours.weight_sum, ours.residual_count);
       start = ours.x + random_vector<3>(random, 0.02);  // Tukey's loss has many minima
     }
@@ -513,7 +488,7 @@ TEST(Covariance, OfALineEqualsTheFormula) {
   EXPECT_EQ(spread->standard_deviation(0), std::sqrt(spread->matrix(0, 0)));
 }
 
-TEST(Covariance, EqualsEigensInverseInWhateverUnits) {
+TEST(Covariance, IsTheInverseInWhateverUnits) {
   Random random(6);
   for (int k = 0; k < 200; ++k) {
     NormalEquations<6> equations;
@@ -525,12 +500,15 @@ TEST(Covariance, EqualsEigensInverseInWhateverUnits) {
     const Matrix<6> hessian = equations.hessian();
     const auto spread = covariance<6>(hessian, 2.0);
     ASSERT_TRUE(spread && spread->is_full_rank());
-    Matrix<6> units = Matrix<6>::Zero();
-    for (int i = 0; i < 6; ++i) units(i, i) = std::pow(10.0, 3 * i - 7);
-    const Matrix<6> tame = units.inverse() * hessian * units.inverse();
-    const Matrix<6> expected = 2.0 * tame.inverse();
-    const Matrix<6> actual = units * spread->matrix * units;
-    ASSERT_LT((actual - expected).norm(), 1e-9 * expected.norm()) << k;
+    Matrix<6> tame, spread_tame;
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 6; ++i) {
+        const double unit = std::pow(10.0, 3 * (i + j) - 14);
+        tame(i, j) = hessian(i, j) / unit;
+        spread_tame(i, j) = spread->matrix(i, j) * unit;
+      }
+    }
+    ASSERT_LT((tame * spread_tame - 2.0 * Matrix<6>::Identity()).norm(), 1e-9) << k;
   }
 }
 
@@ -607,7 +585,7 @@ const auto kRational = problem_of<3>([](const Vector<3>& at, NormalEquations<3>*
   const auto a = autodiff::seed<3>(at[0], 0), b = autodiff::seed<3>(at[1], 1),
              c = autodiff::seed<3>(at[2], 2);
   for (int k = 0; k < 20; ++k) {
-    const double y = ((k * 37) % 11) / 8.0;
+    const double y = 1.5 + (2.0 + 0.5 * k) / (1.0 + 0.3 * k) + ((k * 37) % 11 - 5) / 40.0;
     equations->add((a + b * k) / (1.0 + c * c * k) + sqrt(1.0 + a * a) - y, 1.0 / (1 + k),
                    RobustLoss::huber(0.5));
   }
@@ -624,7 +602,7 @@ TEST(Minimize, GivesTheSameBitsOnEveryMachine) {
   };
   for (int i = 0; i < 3; ++i) mix(minimum.x[i]);
   for (int i = 0; i < 9; ++i) mix(spread->matrix.data()[i]);
-  EXPECT_EQ(hash, 0u);
+  EXPECT_EQ(hash, 2281365164735228806u);
 }
 
 TEST(Minimize, AllocatesNothing) {

@@ -1,6 +1,5 @@
 // The solver against certified results, and against Ceres on the same problems.
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "flatpose/refine/levenberg_marquardt.hpp"
+#include "tests/lib/refine/ceres_judge.hpp"
 #include "tests/lib/refine/nist_strd_problems.hpp"
 
 namespace flatpose::refine::nist {
@@ -82,46 +82,22 @@ double digits(const Problem& problem, const Parameters& x) {
   return worst;
 }
 
-class CeresCurve final : public ceres::CostFunction {
- public:
-  explicit CeresCurve(const Problem& problem) : problem_(problem) {
-    set_num_residuals(static_cast<int>(problem.observations.size()));
-    mutable_parameter_block_sizes()->push_back(problem.parameter_count);
-  }
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    for (int k = 0; k < num_residuals(); ++k) {
-      const Observation& at = problem_.observations[static_cast<std::size_t>(k)];
-      const Prediction prediction = problem_.predict(parameters[0], at.x);
-      residuals[k] = prediction.value - at.y;
-      if (!std::isfinite(residuals[k])) return false;  // as Ceres asks for
-      if (jacobians == nullptr || jacobians[0] == nullptr) continue;
-      for (int i = 0; i < problem_.parameter_count; ++i)
-        jacobians[0][k * problem_.parameter_count + i] = prediction.derivative[i];
-    }
-    return true;
-  }
-
- private:
-  const Problem& problem_;
-};
-
 Outcome solve_with_ceres(const Problem& problem, const Parameters& start) {
+  CeresTask task;
+  task.residual_count = static_cast<int>(problem.observations.size());
+  task.start.assign(start.begin(), start.begin() + problem.parameter_count);
+  task.evaluate = [&problem](const double* parameters, int k, double* residual, double* row) {
+    const Observation& at = problem.observations[static_cast<std::size_t>(k)];
+    const Prediction prediction = problem.predict(parameters, at.x);
+    *residual = prediction.value - at.y;
+    std::copy_n(prediction.derivative.begin(), problem.parameter_count, row);
+    return std::isfinite(*residual);
+  };
+  const CeresOutcome theirs = refine::solve_with_ceres(task);
   Outcome out;
-  out.x = start;
-  ceres::Problem peer;
-  peer.AddResidualBlock(new CeresCurve(problem), nullptr, out.x.data());
-  ceres::Solver::Options options;
-  options.max_num_iterations = 10000;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.function_tolerance = 1e-16;
-  options.gradient_tolerance = 1e-18;
-  options.parameter_tolerance = 1e-14;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &peer, &summary);
-  out.residual_square_sum = 2.0 * summary.final_cost;
-  out.iteration_count = static_cast<int>(summary.iterations.size()) - 1;
+  std::copy(theirs.x.begin(), theirs.x.end(), out.x.begin());
+  out.residual_square_sum = 2.0 * theirs.cost;
+  out.iteration_count = theirs.iteration_count;
   return out;
 }
 
