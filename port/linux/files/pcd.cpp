@@ -9,6 +9,7 @@
 #include "port/linux/files/atomic_file.hpp"
 #include "port/linux/files/pcd_body.hpp"
 #include "port/linux/files/pcd_header.hpp"
+#include "port/linux/files/words.hpp"
 
 namespace flatpose::port {
 namespace {
@@ -41,8 +42,10 @@ std::string shortest(double value) {
 }  // namespace
 
 bool is_pcd(std::span<const std::byte> bytes) noexcept {
-  const std::string_view text = as_text(bytes);
-  return text.starts_with("# .PCD") || text.starts_with("VERSION");
+  std::string_view text = as_text(bytes).substr(0, kPcdLineBytesMax);
+  if (text.starts_with("# .PCD")) return true;
+  while (text.starts_with('#')) (void)take_line(text);
+  return text.starts_with("VERSION") || text.starts_with("FIELDS");
 }
 
 Scan read_pcd(const std::string& path, std::span<const std::byte> bytes, const ReadLimits& limits) {

@@ -166,7 +166,9 @@ class AsciiReader {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (i != header_.value_index[axis]) continue;
         const auto value = parse_coordinate(word);
-        if (!value) fail("\"" + printable(word, 40) + "\" is not a number", "copy the file again");
+        if (!value)
+          fail(std::string("\"").append(printable(word, 40)) + "\" is not a number",
+               "copy the file again");
         xyz_mm[axis] = *value;
       }
     }

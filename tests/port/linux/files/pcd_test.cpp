@@ -148,6 +148,10 @@ TEST(ReadScan, GoesByContentNotByName) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_scan(folder.write("scan.png", with_data({}, "ascii", small_ascii()))).width_px, 3);
   EXPECT_EQ(read_scan(folder.write("scan.pcd", kSickJson)).width_px, 2);
+  const std::string other_comment = replaced(with_data({}, "ascii", small_ascii()), ".PCD", "a");
+  EXPECT_EQ(read_scan(folder.write("scan", "#\n" + other_comment)).width_px, 3);
+  expect_input_error([&] { (void)read_scan(folder.write("a.pcd", "#!/bin/sh\n")); },
+                     {"#!/bin/s", "organized PCD"});
   expect_input_error([&] { (void)read_scan(folder.write("a.pcd", "ply\nformat")); },
                      {"ply\\x0aform", "organized PCD"});
   expect_input_error([&] { (void)read_scan(folder.write("a.pcd", "")); }, {"it is empty"});
