@@ -12,6 +12,7 @@ const char* to_string(Status status) noexcept {
     case Status::kNotFinite: return "a number is not finite";
     case Status::kTooFewPoints: return "too few valid points";
     case Status::kNoPart: return "no part stands out";
+    case Status::kSeveralParts: return "several parts stand out";
     case Status::kNoContour: return "no usable contour";
     case Status::kBadMagic: return "not a file of this kind";
     case Status::kBadVersion: return "written by a newer version";

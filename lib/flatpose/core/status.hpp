@@ -14,6 +14,7 @@ enum class [[nodiscard]] Status{
     kNotFinite,     ///< A number that must be finite is not.
     kTooFewPoints,  ///< Not enough valid data to compute anything.
     kNoPart,        ///< The region holds nothing that stands out as a part.
+    kSeveralParts,  ///< More than one part stands out: say which by a region.
     kNoContour,     ///< The part has no usable contour.
     kBadMagic,      ///< Not a file of this kind.
     kBadVersion,    ///< Written by a newer version.

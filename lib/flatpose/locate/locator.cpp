@@ -206,7 +206,7 @@ class Pipeline {
     const Pose& pose = polished.work_T_object;
     const Verification v = verify(part_, work_.fine, work_.claimed, pose, settings_.verify);
     if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
-      is_ambiguous_ |= rivals_first(v, pose);
+      note_rival(v.score, pose);
       return;
     }
     if (v.score < settings_.score_threshold || v.visible < config_.min_visible ||
@@ -218,17 +218,19 @@ class Pipeline {
     claim(part_, work_.fine, pose, settings_.verify, work_.claimed);
   }
 
-  /// Whether a second pose explains the best match's place about as well, but is no equivalent of
-  /// it.
-  [[nodiscard]] bool rivals_first(const Verification& v, const Pose& pose) const noexcept {
+  /// A second pose in the place of a match that is no equivalent of it.
+  void note_rival(double score, const Pose& pose) noexcept {
     constexpr double kScoreGap = 0.02;
     constexpr double kAngleGap_rad = 10.0 * kRadPerDeg;
-    if (accepted_count_ == 0) return false;
-    const Match& best = result_.matches[0];
-    if (v.score < best.score - kScoreGap) return false;
     const Pose rival = model::canonical_equivalent(frames_.face_T_work * pose, part_.symmetry);
-    return norm(rival.position_mm - best.face_T_object.position_mm) < part_.radius_mm &&
-           angle_between_rad(rival.rotation, best.face_T_object.rotation) > kAngleGap_rad;
+    for (int i = 0; i < accepted_count_; ++i) {
+      const Pose& accepted = result_.matches[i].face_T_object;
+      const bool is_other = norm(rival.position_mm - accepted.position_mm) < part_.radius_mm &&
+                            angle_between_rad(rival.rotation, accepted.rotation) > kAngleGap_rad;
+      if (!is_other) continue;
+      result_.rival_score = std::max(result_.rival_score, score);
+      is_ambiguous_ |= i == 0 && score > result_.matches[0].score - kScoreGap;
+    }
   }
 
   [[nodiscard]] bool is_allowed(const Pose& work_T_object) const noexcept {

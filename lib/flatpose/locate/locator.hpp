@@ -77,6 +77,7 @@ struct LocateResult {
   std::int64_t hypothesis_count = 0;
   std::int64_t candidate_count = 0;
   std::size_t peak_bytes = 0;
+  double rival_score = 0.0;  ///< The best score of another pose in the place of a match.
   double best_rejected_score =
       0.0;  ///< The best that did not become a match: how near a miss or a rival came.
 

@@ -15,7 +15,7 @@
 // edge.
 //
 // Limits: a point more than 65536 cells from the grid's origin counts as missing. Places are
-// snapped to 1/4096 of a cell.
+// snapped to 1/2048 of a cell.
 
 #include <cstddef>
 

@@ -2,7 +2,7 @@
 // One row of a scan in the grid of a height map: what the painters of this room read. Places are
 // integers, so that inside and outside are decided exactly and no crack can open between triangles.
 //
-// A place is snapped to the middle of a subcell, 1/4096 of a cell wide: in units of half a subcell
+// A place is snapped to the middle of a subcell, 1/2048 of a cell wide: in units of half a subcell
 // it is odd, and the centre of cell i lies at i * kUnitsPerCell, which is even. So no corner ever
 // lies on a cell centre's row or column, and a scan whose pitch is the cell's puts one centre into
 // a quad, not four.
@@ -18,7 +18,7 @@
 
 namespace flatpose::rectify {
 
-inline constexpr int kUnitBits = 13;
+inline constexpr int kUnitBits = 12;
 inline constexpr std::int32_t kUnitsPerCell = 1 << kUnitBits;
 /// A point farther than this from cell (0, 0) is as good as missing: products of units stay in
 /// 64 bits.

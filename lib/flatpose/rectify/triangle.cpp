@@ -11,19 +11,15 @@ namespace {
 struct CellBox {
   std::int32_t column_begin, column_end, row_begin, row_end;
 
-  [[nodiscard]] bool is_one_cell() const noexcept {
-    return (column_end - column_begin == 1) & (row_end - row_begin == 1);
-  }
   [[nodiscard]] bool empty() const noexcept {
     return (column_end <= column_begin) | (row_end <= row_begin);
   }
 };
 
 // Places are odd and centres even: the first centre right of u is (u >> bits) + 1.
-template <class... Corners>
-CellBox box_of(const HeightMap& map, const Corners&... corners) noexcept {
-  const auto [u_min, u_max] = std::minmax({corners.u...});
-  const auto [v_min, v_max] = std::minmax({corners.v...});
+CellBox box_of(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c) noexcept {
+  const auto [u_min, u_max] = std::minmax({a.u, b.u, c.u});
+  const auto [v_min, v_max] = std::minmax({a.v, b.v, c.v});
   return {std::max((u_min >> kUnitBits) + 1, 0),
           std::min((u_max >> kUnitBits) + 1, map.height_mm.width_px),
           std::max((v_min >> kUnitBits) + 1, 0),
@@ -49,14 +45,6 @@ std::int64_t edge(const Seen& a, const Seen& b) noexcept { return a.u * b.v - a.
 
 bool same_side(std::int64_t p, std::int64_t q, std::int64_t r) noexcept {
   return ((p >= 0) & (q >= 0) & (r >= 0)) | ((p <= 0) & (q <= 0) & (r <= 0));
-}
-
-/// Gives the cell to a surface that covers it, if none higher has it.
-void put(const HeightMap& map, int column, int row, float z_mm, std::int32_t source) noexcept {
-  float& height_mm = map.height_mm.row(row)[column];
-  if (height_mm >= z_mm) return;  // false for a missing height, which is NaN
-  height_mm = z_mm;
-  map.source_index.row(row)[column] = source;
 }
 
 /// The mean of the corners' heights with weights whose sum is not zero.
@@ -106,36 +94,6 @@ void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
     }
     row_ab += down_ab, row_bc += down_bc, row_ca += down_ca;
   }
-}
-
-void paint_quad(const HeightMap& map, const Corner& corner_a, const Corner& corner_b,
-                const Corner& corner_c, const Corner& corner_d) noexcept {
-  const CellBox box = box_of(map, corner_a, corner_b, corner_c, corner_d);
-  if (box.empty()) return;
-  if (!box.is_one_cell()) {
-    paint_triangle(map, corner_a, corner_b, corner_c);
-    paint_triangle(map, corner_a, corner_c, corner_d);
-    return;
-  }
-  // The common case of a scan about as dense as the map: both triangles are judged at once, without
-  // a branch between them.
-  const int column = box.column_begin;
-  const int row = box.row_begin;
-  const Seen a(corner_a, column, row), b(corner_b, column, row);
-  const Seen c(corner_c, column, row), d(corner_d, column, row);
-  const std::int64_t ab = edge(a, b), bc = edge(b, c), cd = edge(c, d), da = edge(d, a);
-  const std::int64_t ac = edge(a, c);
-  const bool in_abc = same_side(ab, bc, -ac) & (ab + bc - ac != 0);
-  const bool in_acd = same_side(ac, cd, da) & (ac + cd + da != 0);
-  if (!(in_abc | in_acd)) return;
-  const Seen third = in_abc ? b : d;
-  const std::int64_t weight_a = in_abc ? bc : cd;
-  const std::int64_t weight_third = in_abc ? -ac : ac;
-  const std::int64_t weight_c = in_abc ? ab : da;
-  put(map, column, row, blend(weight_a, a.z_mm, weight_third, third.z_mm, weight_c, c.z_mm),
-      nearest_source(a, third, c));
-  if (in_abc & in_acd)  // on the diagonal, or a quad folded over itself
-    put(map, column, row, blend(cd, a.z_mm, ac, d.z_mm, da, c.z_mm), nearest_source(a, d, c));
 }
 
 }  // namespace flatpose::rectify

@@ -16,13 +16,18 @@ struct Corner {
   std::int32_t source_index = kNoSource;
 };
 
+/// Gives the cell to a surface that covers it, if none as high has it.
+inline void put(const HeightMap& map, int column, int row, float z_mm,
+                std::int32_t source_index) noexcept {
+  float& height_mm = map.height_mm.row(row)[column];
+  if (height_mm >= z_mm) return;  // false for a missing height, which is NaN
+  height_mm = z_mm;
+  map.source_index.row(row)[column] = source_index;
+}
+
 /// Paints the triangle a, b, c of either winding; none of no area.
 /// Cost: the cells of its box.  Thread: one painter a map.
 void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
                     const Corner& c) noexcept;
-
-/// Paints the triangles a, b, c and a, c, d: all of a quad.
-void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
-                const Corner& d) noexcept;
 
 }  // namespace flatpose::rectify

@@ -1,0 +1,64 @@
+#pragma once
+// A block of neighbouring quads between two scan rows, judged side by side in loops that run on
+// vectors. Most quads of a scan about as dense as the map hold one cell's centre or none: these are
+// finished here; the rest is left to triangle.hpp.
+//
+// The arithmetic of the common case is exact in float: seen from the only centre in its box, a
+// corner is less than a cell away, so places are odd numbers below 2^12, their products are below
+// 2^24, and the difference of two (even, below 2^25) still has all its bits.
+
+#include <array>
+#include <cstdint>
+
+#include "flatpose/rectify/height_map.hpp"
+
+namespace flatpose::rectify {
+
+inline constexpr int kBlock = 64;  // quads
+
+/// A quad's corners are a (above, left), b (above, right), c (below, right), d (below, left); bits
+/// of its edges that hold.
+enum Edge : std::int32_t { kAb = 1, kBc = 2, kCd = 4, kAd = 8, kAc = 16, kBd = 32 };
+
+/// What an edge may measure, in units of the grid.
+struct EdgeLimits {
+  float jump_mm;
+  float slope_squared;  ///< (mm per unit)^2
+  float gap_squared;    ///< units^2
+};
+
+/// The corners of `count` quads: entry i of each array is a or d of quad i, entry i + 1 its b or c.
+struct QuadBlock {
+  const std::int32_t* u_above;
+  const std::int32_t* v_above;
+  const float* z_above_mm;
+  const std::int32_t* u_below;
+  const std::int32_t* v_below;
+  const float* z_below_mm;
+  int count;
+};
+
+enum class Finding : std::int32_t {
+  kNothing = 0,    ///< No cell's centre is covered.
+  kOneCell = 1,    ///< The cell's height and nearest corner are found.
+  kTriangles = 2,  ///< To be painted triangle by triangle.
+};
+
+struct BlockFindings {
+  std::array<std::int32_t, kBlock> edges;  ///< Bits of Edge.
+  std::array<Finding, kBlock> finding;
+  std::array<std::int32_t, kBlock> column;
+  std::array<std::int32_t, kBlock> row;
+  std::array<float, kBlock> height_mm;
+  std::array<std::int32_t, kBlock> nearest;  ///< 0 to 3 for corners a to d.
+};
+
+/// False when no quad of the block can hold a cell's centre.
+[[nodiscard]] bool covers_any(const QuadBlock& block) noexcept;
+
+void judge_edges(const QuadBlock& block, const EdgeLimits& limits, BlockFindings& out) noexcept;
+
+/// Reads out.edges, writes the rest.
+void find_cells(const QuadBlock& block, const Grid& grid, BlockFindings& out) noexcept;
+
+}  // namespace flatpose::rectify

@@ -1,0 +1,296 @@
+#include "flatpose/teach/part_mask.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatpose::teach {
+namespace {
+
+constexpr std::int32_t kUnassigned = 0;
+constexpr std::int32_t kBarrier = -1;
+constexpr std::int32_t kBackground = -2;
+constexpr std::int32_t kOutside = -3;
+// Areas beyond this many are specks: they are counted as background.
+constexpr int kAreaCountMax = 1024;
+constexpr std::int32_t kAreaCellsMin = 12;
+
+struct Area {
+  std::int32_t cell_count = 0;
+  std::int32_t upper_count = 0;         ///< Edges that fall away from it ...
+  std::int32_t lower_count = 0;         ///< ... and toward it.
+  std::int32_t rests_on = kUnassigned;  ///< The area that most edges of its own fall to.
+  bool is_part = false;
+};
+
+class Partition {
+ public:
+  Partition(const scene::Scene& scene, Arena& arena) noexcept
+      : scene_(scene), width_px_(scene.map.grid.width_px), height_px_(scene.map.grid.height_px) {
+    label_ = arena.take_image<std::int32_t>(width_px_, height_px_);
+    stack_ = arena.take<std::int32_t>(static_cast<std::size_t>(width_px_) *
+                                      static_cast<std::size_t>(height_px_));
+    areas_ = arena.take<Area>(kAreaCountMax + 1);
+  }
+
+  void draw(const Frames& frames, const Region& region) noexcept {
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        const Vec3 p_work{scene_.map.grid.x_of(x), scene_.map.grid.y_of(y), 0.0};
+        const Vec3 p_face = frames.face_T_work * p_work;
+        label_(x, y) = region.contains(p_face.x, p_face.y) ? kUnassigned : kOutside;
+        if (label_(x, y) == kUnassigned) ++region_cell_count_;
+      }
+    }
+    for (const image::EdgePoint& e : scene_.edges) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int x = e.column + dx;
+          const int y = e.row + dy;
+          if (label_.contains(x, y) && label_(x, y) == kUnassigned) label_(x, y) = kBarrier;
+        }
+      }
+    }
+  }
+
+  void flood_background() noexcept {
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        if (label_(x, y) == kUnassigned && touches_outside(x, y)) (void)flood(x, y, kBackground);
+      }
+    }
+  }
+
+  std::int32_t label_areas() noexcept {
+    std::fill(areas_.begin(), areas_.end(), Area{});
+    std::int32_t shut_in_count = 0;
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        if (label_(x, y) != kUnassigned) continue;
+        const std::int32_t label = area_count_ < kAreaCountMax ? ++area_count_ : kBackground;
+        const std::int32_t cell_count = flood(x, y, label);
+        if (label == kBackground) continue;
+        areas_[label].cell_count = cell_count;
+        shut_in_count += cell_count;
+      }
+    }
+    return shut_in_count;
+  }
+
+  /// Nothing is shut in: the region itself is the part.
+  void take_region_whole() noexcept {
+    area_count_ = 1;
+    std::fill(areas_.begin(), areas_.end(), Area{});
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        std::int32_t& label = label_(x, y);
+        if (label == kOutside || label == kBarrier) continue;
+        label = 1;
+        ++areas_[1].cell_count;
+      }
+    }
+    areas_[1].is_part = true;
+  }
+
+  void vote() noexcept {
+    for (const image::EdgePoint& e : scene_.edges) {
+      const std::int32_t upper = area_beside(e, -1.0F);
+      const std::int32_t lower = area_beside(e, 1.0F);
+      if (upper > 0) ++areas_[upper].upper_count;
+      if (lower > 0) ++areas_[lower].lower_count;
+      if (upper > 0 && lower != kUnassigned && areas_[upper].rests_on <= 0)
+        areas_[upper].rests_on = lower;
+    }
+  }
+
+  [[nodiscard]] bool is_pit(const Area& area) const noexcept {
+    return area.upper_count * 6 < area.lower_count;
+  }
+
+  [[nodiscard]] std::int32_t largest() const noexcept {
+    std::int32_t best = 0;
+    for (std::int32_t i = 1; i <= area_count_; ++i) {
+      if (is_pit(areas_[i])) continue;
+      if (best == 0 || areas_[i].cell_count > areas_[best].cell_count) best = i;
+    }
+    return best;
+  }
+
+  /// Everything shut in but pits and specks.
+  void take_all() noexcept {
+    for (std::int32_t i = 1; i <= area_count_; ++i) {
+      areas_[i].is_part = !is_pit(areas_[i]) && areas_[i].cell_count >= kAreaCellsMin;
+    }
+  }
+
+  /// The largest and what stands on it.  Fails: kSeveralParts.
+  Status take_largest() noexcept {
+    const std::int32_t part = largest();
+    areas_[part].is_part = true;
+    for (std::int32_t i = 1; i <= area_count_; ++i) {
+      if (i == part || is_pit(areas_[i]) || areas_[i].cell_count < kAreaCellsMin) continue;
+      areas_[i].is_part = areas_[i].rests_on == part;
+      const bool is_rival =
+          areas_[i].rests_on <= 0 && 2 * areas_[i].cell_count > areas_[part].cell_count;
+      if (is_rival) return Status::kSeveralParts;
+    }
+    return Status::kOk;
+  }
+
+  void write(PartMask& mask) noexcept {
+    mask.cell_count = 0;
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        const bool is_part = label_(x, y) > 0 && areas_[label_(x, y)].is_part;
+        mask.is_part(x, y) = is_part ? 1 : 0;
+        mask.is_contour(x, y) = 0;
+        if (is_part) ++mask.cell_count;
+      }
+    }
+    std::int32_t falls_away = 0;
+    std::int32_t falls_toward = 0;
+    for (const image::EdgePoint& e : scene_.edges) {
+      const bool upper = is_part_area(area_beside(e, -1.0F));
+      const bool lower = is_part_area(area_beside(e, 1.0F));
+      if (upper) mask.is_contour(e.column, e.row) = 1;
+      if (upper && !lower) ++falls_away;
+      if (lower && !upper) ++falls_toward;
+    }
+    mask.lies_below = falls_toward > falls_away;
+  }
+
+  [[nodiscard]] std::int32_t region_cell_count() const noexcept { return region_cell_count_; }
+
+ private:
+  [[nodiscard]] bool is_part_area(std::int32_t label) const noexcept {
+    return label > 0 && areas_[label].is_part;
+  }
+
+  [[nodiscard]] bool touches_outside(int x, int y) const noexcept {
+    if (x == 0 || y == 0 || x == width_px_ - 1 || y == height_px_ - 1) return true;
+    return label_(x - 1, y) == kOutside || label_(x + 1, y) == kOutside ||
+           label_(x, y - 1) == kOutside || label_(x, y + 1) == kOutside;
+  }
+
+  // Four-connected, with a stack of our own; each cell is pushed once.
+  std::int32_t flood(int x, int y, std::int32_t label) noexcept {
+    std::int32_t depth = 0;
+    std::int32_t count = 0;
+    const auto push = [&](int px, int py) {
+      if (!label_.contains(px, py) || label_(px, py) != kUnassigned) return;
+      label_(px, py) = label;
+      stack_[depth++] = py * width_px_ + px;
+      ++count;
+    };
+    push(x, y);
+    while (depth > 0) {
+      const std::int32_t cell = stack_[--depth];
+      const int cx = cell % width_px_;
+      const int cy = cell / width_px_;
+      push(cx - 1, cy);
+      push(cx + 1, cy);
+      push(cx, cy - 1);
+      push(cx, cy + 1);
+    }
+    return count;
+  }
+
+  // The area a little beside an edge: side -1 is its upper side, +1 its lower one. The barrier is
+  // three cells wide.
+  [[nodiscard]] std::int32_t area_beside(const image::EdgePoint& e, float side) const noexcept {
+    for (const float distance_px : {2.0F, 3.0F, 4.0F}) {
+      const int x = static_cast<int>(std::floor(e.x_px + side * distance_px * e.dx + 0.5F));
+      const int y = static_cast<int>(std::floor(e.y_px + side * distance_px * e.dy + 0.5F));
+      if (!label_.contains(x, y)) return kOutside;
+      if (label_(x, y) != kBarrier) return label_(x, y);
+    }
+    return kUnassigned;
+  }
+
+  const scene::Scene& scene_;
+  int width_px_;
+  int height_px_;
+  ImageView<std::int32_t> label_;
+  std::span<std::int32_t> stack_;
+  std::span<Area> areas_;
+  std::int32_t area_count_ = 0;
+  std::int32_t region_cell_count_ = 0;
+};
+
+}  // namespace
+
+PartMask take_part_mask(Arena& arena, const rectify::Grid& grid) noexcept {
+  PartMask mask;
+  mask.is_part = arena.take_image<std::uint8_t>(grid.width_px, grid.height_px);
+  mask.is_contour = arena.take_image<std::uint8_t>(grid.width_px, grid.height_px);
+  return mask;
+}
+
+void reserve_mask_scratch(Arena& arena, const rectify::Grid& grid) noexcept {
+  scene::Scene scene;
+  scene.map.grid = grid;
+  (void)Partition(scene, arena);
+}
+
+Status find_part(const scene::Scene& scene, const Frames& frames, const Region& region,
+                 Arena& scratch, PartMask& mask) noexcept {
+  const ArenaScope scope(scratch);
+  Partition partition(scene, scratch);
+  if (scratch.failed()) return Status::kOutOfMemory;
+  partition.draw(frames, region);
+  partition.flood_background();
+  const std::int32_t shut_in_count = partition.label_areas();
+  // A part fills a good share of the region that is drawn around it.
+  constexpr int kRegionSharePerCell = 8;
+  const bool has_region = region.kind != Region::Kind::kAll;
+  if (has_region && shut_in_count * kRegionSharePerCell < partition.region_cell_count()) {
+    partition.take_region_whole();
+  } else {
+    partition.vote();
+    if (partition.largest() == 0) return Status::kNoPart;
+    if (has_region) {
+      partition.take_all();
+    } else if (const Status s = partition.take_largest(); s != Status::kOk) {
+      return s;
+    }
+  }
+  partition.write(mask);
+  return mask.cell_count >= kAreaCellsMin ? Status::kOk : Status::kNoPart;
+}
+
+Status mask_from_labels(const scene::Scene& scene, ImageView<const std::uint8_t> labels,
+                        PartMask& mask) noexcept {
+  const auto label_of = [&](int x, int y) {
+    const std::int32_t source = scene.map.source_index(x, y);
+    if (source == rectify::kNoSource) return Label::kNone;
+    return static_cast<Label>(labels(source % labels.width_px, source / labels.width_px));
+  };
+  mask.cell_count = 0;
+  for (int y = 0; y < mask.is_part.height_px; ++y) {
+    for (int x = 0; x < mask.is_part.width_px; ++x) {
+      const Label label = label_of(x, y);
+      const bool is_part = label == Label::kSurface || label == Label::kOrigin;
+      mask.is_part(x, y) = is_part ? 1 : 0;
+      mask.is_contour(x, y) = 0;
+      if (is_part) ++mask.cell_count;
+    }
+  }
+  if (mask.cell_count < kAreaCellsMin) return Status::kNoPart;
+  // A stroke of the brush marks the contour: edges of the scan under it or beside it count.
+  constexpr int kBrushReach_px = 3;
+  std::int32_t contour_count = 0;
+  for (const image::EdgePoint& e : scene.edges) {
+    bool marked = false;
+    for (int dy = -kBrushReach_px; dy <= kBrushReach_px && !marked; ++dy) {
+      for (int dx = -kBrushReach_px; dx <= kBrushReach_px && !marked; ++dx) {
+        const int x = e.column + dx;
+        const int y = e.row + dy;
+        marked = mask.is_part.contains(x, y) && label_of(x, y) == Label::kEdge;
+      }
+    }
+    mask.is_contour(e.column, e.row) = marked ? 1 : 0;
+    if (marked) ++contour_count;
+  }
+  return contour_count > 0 ? Status::kOk : Status::kNoContour;
+}
+
+}  // namespace flatpose::teach

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+
+#include "flatpose/image/chamfer.hpp"
+#include "flatpose/search/tilt_field.hpp"
+#include "flatpose/teach/clouds.hpp"
+#include "flatpose/teach/spread_order.hpp"
+
+namespace flatpose::teach {
+namespace {
+
+constexpr int kFitRadius_px = 2;
+constexpr int kSampleCountMin = 8;
+
+std::size_t cell_count_of(const rectify::Grid& grid) noexcept {
+  return static_cast<std::size_t>(grid.width_px) * static_cast<std::size_t>(grid.height_px);
+}
+
+// Distance of every cell to the nearest one that is no free surface: off the part, missing, or an
+// edge.
+Status measure_clearance(const scene::Scene& scene, const PartMask& mask,
+                         ImageView<std::uint8_t> blocked,
+                         ImageView<std::uint16_t> distance_third_px) noexcept {
+  for (int y = 0; y < blocked.height_px; ++y) {
+    for (int x = 0; x < blocked.width_px; ++x) {
+      const bool free = mask.is_part(x, y) != 0 && scene.edge_kind(x, y) == 0;
+      blocked(x, y) = free ? 0 : 1;
+    }
+  }
+  return image::chamfer_distance(blocked, distance_third_px);
+}
+
+}  // namespace
+
+void reserve_cloud_scratch(Arena& arena, const rectify::Grid& grid) noexcept {
+  (void)arena.take<SurfaceSample>(kSampleCountMax);
+  (void)arena.take<double>(kSampleCountMax);
+  (void)search::take_tilt_field(arena, grid.width_px, grid.height_px);
+  (void)arena.take<std::uint8_t>(cell_count_of(grid));
+  (void)arena.take<std::uint16_t>(cell_count_of(grid));
+  for (int k = 0; k < 3; ++k) (void)arena.take<double>(cell_count_of(grid));
+  // The contour's scratch is smaller than what the surface's fit has given back by then.
+}
+
+Status sample_surface(const scene::Scene& scene, const PartMask& mask, double noise_mm,
+                      Arena& arena, SurfaceSamples& out) noexcept {
+  const rectify::Grid& grid = scene.map.grid;
+  out.samples = arena.take<SurfaceSample>(kSampleCountMax);
+  out.clearance_mm = arena.take<double>(kSampleCountMax);
+  const ArenaScope scope(arena);
+  search::TiltField tilt = search::take_tilt_field(arena, grid.width_px, grid.height_px);
+  const auto blocked = arena.take_image<std::uint8_t>(grid.width_px, grid.height_px);
+  const auto distance_third_px = arena.take_image<std::uint16_t>(grid.width_px, grid.height_px);
+  if (arena.failed()) return Status::kOutOfMemory;
+  if (const Status s =
+          search::fit_tilt_field(scene.filled_mm, grid.cell_mm, kFitRadius_px, arena, tilt);
+      s != Status::kOk) {
+    return s;
+  }
+  if (const Status s = measure_clearance(scene, mask, blocked, distance_third_px); s != Status::kOk)
+    return s;
+
+  // The widest stride that still gives enough samples, so that they lie evenly.
+  const double per_sample = std::sqrt(static_cast<double>(mask.cell_count) / kSampleCountMax);
+  const int stride_px = std::max(1, static_cast<int>(std::ceil(per_sample)));
+  constexpr int kClearanceMin_third_px = 3 * (kFitRadius_px + 1);
+  const double rms_max_mm = 3.0 * noise_mm + 0.05 * grid.cell_mm;
+  out.stride_mm = stride_px * grid.cell_mm;
+  out.count = 0;
+  for (int y = 0; y < grid.height_px; y += stride_px) {
+    for (int x = 0; x < grid.width_px; x += stride_px) {
+      if (distance_third_px(x, y) < kClearanceMin_third_px || scene.missing(x, y) != 0) continue;
+      if (!(tilt.rms_mm(x, y) <= rms_max_mm) || out.count == kSampleCountMax) continue;
+      out.samples[out.count] = {grid.x_of(x), grid.y_of(y), tilt.plane_mm(x, y), tilt.slope_x(x, y),
+                                tilt.slope_y(x, y)};
+      out.clearance_mm[out.count] = distance_third_px(x, y) * grid.cell_mm / 3.0;
+      ++out.count;
+    }
+  }
+  return out.count >= kSampleCountMin ? Status::kOk : Status::kTooFewPoints;
+}
+
+Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_object,
+                           double margin_mm, Arena& scratch, model::Template& part) noexcept {
+  const ArenaScope scope(scratch);
+  const std::span<int> candidates = scratch.take<int>(kSampleCountMax);
+  const std::span<double> nearest = scratch.take<double>(kSampleCountMax);
+  const std::span<int> order = scratch.take<int>(model::kSurfacePointCountMax);
+  if (scratch.failed()) return Status::kOutOfMemory;
+  int candidate_count = 0;
+  for (int i = 0; i < samples.count; ++i) {
+    if (samples.clearance_mm[i] >= margin_mm) candidates[candidate_count++] = i;
+  }
+  if (candidate_count < kSampleCountMin) {  // a part of narrow webs: take what there is
+    candidate_count = samples.count;
+    for (int i = 0; i < samples.count; ++i) candidates[i] = i;
+  }
+  const auto distance = [&](int a, int b) {
+    const SurfaceSample& p = samples.samples[candidates[a]];
+    const SurfaceSample& q = samples.samples[candidates[b]];
+    return (p.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (p.y_mm - q.y_mm) * (p.y_mm - q.y_mm);
+  };
+  part.surface_count = spread_order(candidate_count, 0, distance, nearest, order);
+  const Pose object_T_work = work_T_object.inverse();
+  for (int k = 0; k < part.surface_count; ++k) {
+    const SurfaceSample& s = samples.samples[candidates[order[k]]];
+    const Vec3 p = object_T_work * Vec3{s.x_mm, s.y_mm, s.z_mm};
+    const Vec3 n = object_T_work.rotation * normalized({-s.slope_x, -s.slope_y, 1.0});
+    part.surface[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
+                       static_cast<float>(n.x), static_cast<float>(n.y)};
+  }
+  return Status::kOk;
+}
+
+Status place_anchors(const SurfaceSamples& samples, const Pose& work_T_object, double tolerance_mm,
+                     model::Template& part) noexcept {
+  const Pose object_T_work = work_T_object.inverse();
+  const auto object_of = [&](int i) {
+    const SurfaceSample& s = samples.samples[i];
+    return object_T_work * Vec3{s.x_mm, s.y_mm, s.z_mm};
+  };
+  // A fallback lies away from the ones before it, or it would be covered with them.
+  const auto worth = [&](int i) {
+    const Vec3 p = object_of(i);
+    if (std::fabs(p.z) > tolerance_mm) return 0.0;
+    double apart_mm = samples.clearance_mm[i];
+    for (int k = 0; k < part.anchor_count; ++k) {
+      const double dx = p.x - part.anchors[k].x_mm;
+      const double dy = p.y - part.anchors[k].y_mm;
+      apart_mm = std::min(apart_mm, 0.5 * std::sqrt(dx * dx + dy * dy));
+    }
+    return apart_mm;
+  };
+  part.anchor_count = 0;
+  for (int k = 0; k < model::kAnchorCountMax; ++k) {
+    int best = -1;
+    double best_worth = samples.stride_mm;
+    for (int i = 0; i < samples.count; ++i) {
+      const double w = worth(i);
+      if (w > best_worth) {
+        best = i;
+        best_worth = w;
+      }
+    }
+    if (best < 0) break;
+    const Vec3 p = object_of(best);
+    part.anchors[part.anchor_count++] = {static_cast<float>(p.x), static_cast<float>(p.y),
+                                         static_cast<float>(samples.clearance_mm[best])};
+  }
+  return part.anchor_count > 0 ? Status::kOk : Status::kTooFewPoints;
+}
+
+}  // namespace flatpose::teach
