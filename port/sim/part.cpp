@@ -21,6 +21,7 @@ void require_loop(const Loop& loop, const Part& part) {
 Part make_part(Part part) {
   require_loop(part.outline.outer, part);
   for (const Loop& hole : part.outline.holes) require_loop(hole, part);
+  require(1 + part.outline.holes.size() + part.areas.size() <= kLoopsMax, part, "too many loops");
   require(part.thickness_mm > 0.0, part, "thickness_mm must be > 0");
   for (const Area& area : part.areas) {
     require_loop(area.loop, part);

@@ -14,6 +14,9 @@
 
 namespace flatpose::sim {
 
+/// Outer loop, holes and areas together, so that a set of them fits a word.
+inline constexpr int kLoopsMax = 63;
+
 struct Area {
   Loop loop;         ///< Inside the outer loop; may reach over a hole, which stays a hole.
   double height_mm;  ///< Over the top plane; below 0 a recess, which must not pass the thickness.
@@ -28,7 +31,8 @@ struct Part {
 };
 
 /// The part with its origin moved to the centroid.
-/// Fails: std::invalid_argument (fewer than three points, clockwise loops, thickness, recess).
+/// Fails: std::invalid_argument (fewer than three points, clockwise loops, thickness, recess, more
+/// than kLoopsMax loops).
 [[nodiscard]] Part make_part(Part as_drawn);
 
 /// The names in the order of the catalogue.

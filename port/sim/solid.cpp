@@ -1,6 +1,7 @@
 #include "port/sim/solid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace flatpose::sim {
@@ -44,15 +45,16 @@ Solid::Solid(std::shared_ptr<const Part> part) : part_(std::move(part)) {
   high_mm_ = {high.x + kMarginMm, high.y + kMarginMm, height_max_mm(*part_) + kMarginMm};
   sphere_center_mm_ = 0.5 * (low_mm_ + high_mm_);
   sphere_radius_mm_ = 0.5 * norm(high_mm_ - low_mm_);
-  add_edges(part_->outline.outer);
-  for (const Loop& hole : part_->outline.holes) add_edges(hole);
-  for (const Area& area : part_->areas) add_edges(area.loop);
+  int loop_index = 0;
+  add_edges(part_->outline.outer, loop_index);
+  for (const Loop& hole : part_->outline.holes) add_edges(hole, ++loop_index);
+  for (const Area& area : part_->areas) add_edges(area.loop, ++loop_index);
   build_grid();
 }
 
-void Solid::add_edges(const Loop& loop) {
+void Solid::add_edges(const Loop& loop, int loop_index) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    edges_.push_back({loop[i], loop[(i + 1) % loop.size()] - loop[i]});
+    edges_.push_back({loop[i], loop[(i + 1) % loop.size()] - loop[i], loop_index});
   }
 }
 
@@ -61,24 +63,29 @@ void Solid::build_grid() {
   rows_ = static_cast<int>(std::ceil((high_mm_.y - low_mm_.y) / kCellMm));
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      cells_.push_back(height_at({low_mm_.x + (column + 0.5) * kCellMm,  //
-                                  low_mm_.y + (row + 0.5) * kCellMm}));
+      const Vec2 middle{low_mm_.x + (column + 0.5) * kCellMm, low_mm_.y + (row + 0.5) * kCellMm};
+      cells_.push_back(top_height_mm(*part_, middle).value_or(kNoPart));
     }
   }
-  for (const Edge& edge : edges_) mark(edge);
+  row_edges_.resize(rows_);
+  for (std::size_t i = 0; i < edges_.size(); ++i) mark(static_cast<int>(i));
 }
 
-void Solid::mark(const Edge& edge) {
+int Solid::row_of(double y_mm) const noexcept { return cell_index(y_mm - low_mm_.y, rows_); }
+
+void Solid::mark(int edge_index) {
+  const Edge& edge = edges_[edge_index];
   const double y_low = std::min(edge.from.y, edge.from.y + edge.along.y) - kTinyMm;
   const double y_high = std::max(edge.from.y, edge.from.y + edge.along.y) + kTinyMm;
-  const int last_row = cell_index(y_high - low_mm_.y, rows_);
-  for (int row = cell_index(y_low - low_mm_.y, rows_); row <= last_row; ++row) {
+  const int last_row = row_of(y_high);
+  for (int row = row_of(y_low); row <= last_row; ++row) {
     // The piece of the edge in this row of cells.
     double from = 0.0;
     double to = 1.0;
     const double row_mm = low_mm_.y + row * kCellMm;
     clip(edge.from.y, edge.along.y, row_mm - kTinyMm, row_mm + kCellMm + kTinyMm, from, to);
     if (from > to) continue;
+    row_edges_[row].push_back(edge_index);
     const double a = edge.from.x + from * edge.along.x - low_mm_.x;
     const double b = edge.from.x + to * edge.along.x - low_mm_.x;
     const int last_column = cell_index(std::max(a, b) + kTinyMm, columns_);
@@ -89,8 +96,25 @@ void Solid::mark(const Edge& edge) {
   }
 }
 
-double Solid::height_at(Vec2 p_mm) const noexcept {
-  return top_height_mm(*part_, p_mm).value_or(kNoPart);
+double Solid::height_at(Vec2 p) const noexcept {
+  const int row = row_of(p.y);
+  const double stored_mm = cells_[row * columns_ + cell_index(p.x - low_mm_.x, columns_)];
+  if (!std::isnan(stored_mm)) return stored_mm;
+  // The even-odd rule for all loops at once: a bit a loop, turned over by each of its edges that
+  // lies to the right of p. Only edges of p's own row can.
+  std::uint64_t inside = 0;
+  for (const int index : row_edges_[row]) {
+    const Edge& edge = edges_[index];
+    const double end_y = edge.from.y + edge.along.y;
+    if ((edge.from.y > p.y) == (end_y > p.y)) continue;
+    const double x = edge.from.x + edge.along.x * (p.y - edge.from.y) / edge.along.y;
+    if (p.x < x) inside ^= std::uint64_t{1} << edge.loop;
+  }
+  const int hole_count = static_cast<int>(part_->outline.holes.size());
+  const std::uint64_t holes = ((std::uint64_t{1} << hole_count) - 1) << 1;
+  if ((inside & 1) == 0 || (inside & holes) != 0) return kNoPart;
+  const std::uint64_t areas = inside >> (1 + hole_count);
+  return areas == 0 ? 0.0 : part_->areas[std::bit_width(areas) - 1].height_mm;
 }
 
 std::optional<Solid::Interval> Solid::clip_to_box(const Ray& ray, Interval range) const noexcept {
@@ -137,21 +161,27 @@ std::optional<SolidHit> Solid::enter(const Ray& ray, Interval range, double heig
   return SolidHit{inside.from_mm, normal, Face::kSide};
 }
 
-void Solid::find_cuts(const Ray& ray, Interval range, std::vector<Cut>& cuts) const {
-  const Vec2 o{ray.origin_mm.x, ray.origin_mm.y};
+void Solid::add_cut(const Edge& edge, const Ray& ray, Interval range, std::vector<Cut>& cuts) {
   const Vec2 d{ray.direction.x, ray.direction.y};
+  const double turn = cross(d, edge.along);
+  if (turn == 0.0) return;  // runs along the edge: the neighbours cut it
+  const Vec2 to_edge = edge.from - Vec2{ray.origin_mm.x, ray.origin_mm.y};
+  const double share = cross(to_edge, d) / turn;
+  // A cut too many does no harm (the height is looked up on both sides of it), one too few would.
+  if (!(share >= -kTinyMm && share <= 1.0 + kTinyMm)) return;
+  const double distance_mm = cross(to_edge, edge.along) / turn;
+  if (distance_mm > range.from_mm && distance_mm < range.to_mm) {
+    cuts.push_back({distance_mm, &edge});
+  }
+}
+
+void Solid::find_cuts(const Ray& ray, Interval range, std::vector<Cut>& cuts) const {
   cuts.clear();
-  for (const Edge& edge : edges_) {
-    const double turn = cross(d, edge.along);
-    if (turn == 0.0) continue;  // runs along the edge: the neighbours cut it
-    const Vec2 to_edge = edge.from - o;
-    const double share = cross(to_edge, d) / turn;
-    // A cut too many does no harm (the height is looked up on both sides of it), one too few would.
-    if (!(share >= -kTinyMm && share <= 1.0 + kTinyMm)) continue;
-    const double distance_mm = cross(to_edge, edge.along) / turn;
-    if (distance_mm > range.from_mm && distance_mm < range.to_mm) {
-      cuts.push_back({distance_mm, &edge});
-    }
+  const double y_from = plan(ray, range.from_mm).y;
+  const double y_to = plan(ray, range.to_mm).y;
+  const int last_row = row_of(std::max(y_from, y_to));
+  for (int row = row_of(std::min(y_from, y_to)); row <= last_row; ++row) {
+    for (const int index : row_edges_[row]) add_cut(edges_[index], ray, range, cuts);
   }
   std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) {
     return a.distance_mm < b.distance_mm || (a.distance_mm == b.distance_mm && a.edge < b.edge);

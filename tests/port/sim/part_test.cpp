@@ -66,7 +66,7 @@ TEST(Catalogue, NoPartHasMoreSymmetryThanItSays) {
   for (const std::string& name : part_names()) {
     const Part part = catalogue_part(name);
     if (part.symmetry_fold == 0) continue;
-    for (int deg = 20; deg <= 340; deg += 5) {
+    for (int deg = 20; deg <= 340; deg += 10) {
       if (deg % (360 / part.symmetry_fold) == 0) continue;
       const double angle = deg * kRadPerDeg;
       EXPECT_LT(overlap(part, [&](Vec2 p) { return turned(p, angle); }), 0.96) << name << deg;
@@ -77,7 +77,7 @@ TEST(Catalogue, NoPartHasMoreSymmetryThanItSays) {
 TEST(Catalogue, PadHasNoMirrorSymmetry) {
   const Part pad = catalogue_part("pad");
   double best = 0.0;
-  for (int deg = 0; deg < 360; deg += 2) {
+  for (int deg = 0; deg < 360; deg += 4) {
     const double angle = deg * kRadPerDeg;
     best = std::max(best, overlap(pad, [&](Vec2 p) { return turned({-p.x, p.y}, angle); }));
   }
@@ -144,6 +144,11 @@ TEST(Part, RefusesWhatCannotBeMade) {
   EXPECT_THROW(
       (void)make([](Part& p) { std::reverse(p.outline.outer.begin(), p.outline.outer.end()); }),
       std::invalid_argument);
+  EXPECT_NO_THROW((void)make([](Part& p) { p.areas.assign(62, {circle({}, 9), 1.0}); }));
+  EXPECT_THROW((void)make([](Part& p) {
+                 p.areas.assign(63, {circle({}, 9), 1.0});
+               }),
+               std::invalid_argument);
   EXPECT_THROW((void)make([](Part& p) { p.outline.holes = {rectangle({}, 200, 200)}; }),
                std::invalid_argument);
 }
