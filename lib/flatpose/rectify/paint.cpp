@@ -80,8 +80,7 @@ void paint_strip(const Strip& strip, const EdgeLimits& limits, const HeightMap& 
     const int count = std::min(kBlock, quad_count - first);
     const QuadBlock block = strip.block(first, count);
     if (!covers_any(block)) continue;
-    judge_edges(block, limits, findings);
-    find_cells(block, out.grid, findings);
+    find_cells(block, limits, out.grid, findings);
     for (int i = 0; i < count; ++i) {
       if (findings.finding[i] == Finding::kOneCell) {
         put(out, findings.column[i], findings.row[i], findings.height_mm[i],

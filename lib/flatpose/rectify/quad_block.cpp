@@ -1,179 +1,169 @@
 #include "flatpose/rectify/quad_block.hpp"
 
-#include <bit>
-#include <cmath>
-
+#include "flatpose/rectify/lanes.hpp"
 #include "flatpose/rectify/scan_row.hpp"
-
-// Every loop here is written to become vectors: no branches, logic by & and |, selections by ?:,
-// and arrays the compiler knows to be apart.
 
 namespace flatpose::rectify {
 namespace {
+
+static_assert(kBlock % kLanes == 0 && kRowPadding >= kLanes,
+              "the last quads of a block are judged together with what lies beyond");
 
 constexpr std::int32_t kAbc = kAb | kBc | kAc;
 constexpr std::int32_t kAcd = kAc | kCd | kAd;
 constexpr std::int32_t kAbd = kAb | kBd | kAd;
 constexpr std::int32_t kBcd = kBc | kCd | kBd;
 
-constexpr std::int32_t kNothing = static_cast<std::int32_t>(Finding::kNothing);
-constexpr std::int32_t kOneCell = static_cast<std::int32_t>(Finding::kOneCell);
-constexpr std::int32_t kTriangles = static_cast<std::int32_t>(Finding::kTriangles);
+/// One corner of four quads.
+struct Corners {
+  Int4 u, v;
+  Float4 z_mm;
+};
 
-/// All ones for true. Masks are integers so that every selection is one of integers.
-std::int32_t mask(bool condition) noexcept { return condition ? -1 : 0; }
+/// The corners of the quads from `i` on.
+struct Quads {
+  Corners a, b, c, d;
 
-std::int32_t smaller(std::int32_t a, std::int32_t b) noexcept { return a < b ? a : b; }
-std::int32_t larger(std::int32_t a, std::int32_t b) noexcept { return a > b ? a : b; }
-
-/// `a` where the mask is set, else `b`.
-std::int32_t select(std::int32_t mask_of_a, std::int32_t a, std::int32_t b) noexcept {
-  return (a & mask_of_a) | (b & ~mask_of_a);
-}
-float select(std::int32_t mask_of_a, float a, float b) noexcept {
-  return std::bit_cast<float>(
-      select(mask_of_a, std::bit_cast<std::int32_t>(a), std::bit_cast<std::int32_t>(b)));
-}
+  Quads(const QuadBlock& block, int i) noexcept
+      : a{load4(block.u_above + i), load4(block.v_above + i), load4(block.z_above_mm + i)},
+        b{load4(block.u_above + i + 1), load4(block.v_above + i + 1),
+          load4(block.z_above_mm + i + 1)},
+        c{load4(block.u_below + i + 1), load4(block.v_below + i + 1),
+          load4(block.z_below_mm + i + 1)},
+        d{load4(block.u_below + i), load4(block.v_below + i), load4(block.z_below_mm + i)} {}
+};
 
 /// False when an end is missing: its height is NaN.
-std::int32_t holds(const EdgeLimits& limits, std::int32_t du, std::int32_t dv,
-                   float dz_mm) noexcept {
-  const float x = static_cast<float>(du);
-  const float y = static_cast<float>(dv);
-  const float length_squared = x * x + y * y;
-  const float beyond_mm = std::fabs(dz_mm) - limits.jump_mm;
-  return mask(length_squared <= limits.gap_squared) &
-         (mask(beyond_mm <= 0.0F) |
-          mask(beyond_mm * beyond_mm <= limits.slope_squared * length_squared));
+Int4 holds(const EdgeLimits& limits, const Corners& p, const Corners& q) noexcept {
+  const Float4 x = to_float(q.u - p.u);
+  const Float4 y = to_float(q.v - p.v);
+  const Float4 length_squared = x * x + y * y;
+  const Float4 beyond_mm = absolute(q.z_mm - p.z_mm) - limits.jump_mm;
+  return (length_squared <= limits.gap_squared) &
+         ((beyond_mm <= 0.0F) | (beyond_mm * beyond_mm <= limits.slope_squared * length_squared));
 }
 
-std::int32_t same_side(float p, float q, float r) noexcept {
-  return (mask(p >= 0.0F) & mask(q >= 0.0F) & mask(r >= 0.0F)) |
-         (mask(p <= 0.0F) & mask(q <= 0.0F) & mask(r <= 0.0F));
+Int4 edges_of(const EdgeLimits& limits, const Quads& q) noexcept {
+  return (holds(limits, q.a, q.b) & kAb) | (holds(limits, q.b, q.c) & kBc) |
+         (holds(limits, q.c, q.d) & kCd) | (holds(limits, q.a, q.d) & kAd) |
+         (holds(limits, q.a, q.c) & kAc) | (holds(limits, q.b, q.d) & kBd);
 }
+
+/// Cells whose centres lie in the boxes of the quads. Places are odd and centres even: the first
+/// centre beyond u is (u >> bits) + 1.
+struct Boxes {
+  Int4 column, row;  // the last ones
+  Int4 columns, rows;
+
+  explicit Boxes(const Quads& q) noexcept {
+    column = larger(larger(q.a.u, q.b.u), larger(q.c.u, q.d.u)) >> kUnitBits;
+    row = larger(larger(q.a.v, q.b.v), larger(q.c.v, q.d.v)) >> kUnitBits;
+    columns = column - (smaller(smaller(q.a.u, q.b.u), smaller(q.c.u, q.d.u)) >> kUnitBits);
+    rows = row - (smaller(smaller(q.a.v, q.b.v), smaller(q.c.v, q.d.v)) >> kUnitBits);
+  }
+};
+
+/// A corner as seen from the centre of a cell. Where that is not the box's only one the numbers
+/// mean nothing, and are not looked at.
+struct Seen {
+  Float4 x, y, z_mm;
+
+  Seen(const Corners& p, const Boxes& box) noexcept
+      : x(to_float(p.u - box.column * kUnitsPerCell)),
+        y(to_float(p.v - box.row * kUnitsPerCell)),
+        z_mm(p.z_mm) {}
+  Seen(Int4 mask, const Seen& p, const Seen& q) noexcept  // p where the mask is set, else q
+      : x(mask ? p.x : q.x), y(mask ? p.y : q.y), z_mm(mask ? p.z_mm : q.z_mm) {}
+
+  [[nodiscard]] Float4 distance_squared() const noexcept { return x * x + y * y; }
+};
+
+/// The edge function of p->q at the centre.
+Float4 edge(const Seen& p, const Seen& q) noexcept { return p.x * q.y - p.y * q.x; }
+
+Int4 same_side(Float4 p, Float4 q, Float4 r) noexcept {
+  return ((p >= 0.0F) & (q >= 0.0F) & (r >= 0.0F)) | ((p <= 0.0F) & (q <= 0.0F) & (r <= 0.0F));
+}
+
+/// What the first diagonal's triangles make of the only centre in each box.
+struct Hits {
+  Int4 covered, folded;  // folded: both triangles cover it, at two heights
+  Float4 height_mm;
+  Int4 nearest;
+
+  Hits(const Quads& q, const Boxes& box, Int4 may_abc, Int4 may_acd) noexcept {
+    const Seen a(q.a, box), b(q.b, box), c(q.c, box), d(q.d, box);
+    const Float4 ab = edge(a, b), bc = edge(b, c), cd = edge(c, d), da = edge(d, a);
+    const Float4 ac = edge(a, c);
+    const Float4 area_abc = ab + bc - ac;
+    const Float4 area_acd = ac + cd + da;
+    const Int4 in_abc = may_abc & same_side(ab, bc, -ac) & (area_abc != 0.0F);
+    const Int4 in_acd = may_acd & same_side(ac, cd, da) & (area_acd != 0.0F);
+    covered = in_abc | in_acd;
+    folded = in_abc & in_acd & ((area_abc > 0.0F) ^ (area_acd > 0.0F));
+
+    // The triangle over the centre is a, c and a third; on the diagonal both are right.
+    const Seen third(in_abc, b, d);
+    const Float4 weight_third = in_abc ? -ac : ac;
+    const Float4 weight_c = in_abc ? ab : da;
+    const Float4 area = in_abc ? area_abc : area_acd;
+    height_mm =
+        a.z_mm + (weight_third * (third.z_mm - a.z_mm) + weight_c * (c.z_mm - a.z_mm)) / area;
+
+    const Float4 to_a = a.distance_squared();
+    const Float4 to_third = third.distance_squared();
+    const Int4 third_is_nearer = to_third < to_a;
+    const Float4 to_nearer = third_is_nearer ? to_third : to_a;
+    const Int4 nearer = third_is_nearer & ((in_abc & 1) | (~in_abc & 3));
+    const Int4 c_is_nearest = c.distance_squared() < to_nearer;
+    nearest = (c_is_nearest & 2) | (~c_is_nearest & nearer);
+  }
+};
 
 }  // namespace
 
 bool covers_any(const QuadBlock& block) noexcept {
-  const int count = block.count;
-  const std::int32_t* const u0 = block.u_above;
-  const std::int32_t* const v0 = block.v_above;
-  const std::int32_t* const u1 = block.u_below;
-  const std::int32_t* const v1 = block.v_below;
-  std::int32_t any = 0;
-  for (int i = 0; i < count; ++i) {
+  Int4 covers{};
+  for (int i = 0; i < block.count; i += kLanes) {
+    const Int4 u = load4(block.u_above + i), v = load4(block.v_above + i);
     // No centre's column passes between four places that lie between the same two.
-    const std::int32_t across = (u0[i] ^ u0[i + 1]) | (u0[i] ^ u1[i]) | (u0[i] ^ u1[i + 1]);
-    const std::int32_t down = (v0[i] ^ v0[i + 1]) | (v0[i] ^ v1[i]) | (v0[i] ^ v1[i + 1]);
-    any |= mask((across >> kUnitBits) != 0) & mask((down >> kUnitBits) != 0);
+    const Int4 across = (u ^ load4(block.u_above + i + 1)) | (u ^ load4(block.u_below + i)) |
+                        (u ^ load4(block.u_below + i + 1));
+    const Int4 down = (v ^ load4(block.v_above + i + 1)) | (v ^ load4(block.v_below + i)) |
+                      (v ^ load4(block.v_below + i + 1));
+    covers |= ((across >> kUnitBits) != 0) & ((down >> kUnitBits) != 0);
   }
-  return any != 0;
+  return any(covers);
 }
 
-void judge_edges(const QuadBlock& block, const EdgeLimits& edge_limits,
-                 BlockFindings& out) noexcept {
+void find_cells(const QuadBlock& block, const EdgeLimits& edge_limits, const Grid& grid,
+                BlockFindings& out) noexcept {
   const EdgeLimits limits = edge_limits;
-  const int count = block.count;
-  const std::int32_t* const u0 = block.u_above;
-  const std::int32_t* const v0 = block.v_above;
-  const float* const z0 = block.z_above_mm;
-  const std::int32_t* const u1 = block.u_below;
-  const std::int32_t* const v1 = block.v_below;
-  const float* const z1 = block.z_below_mm;
-  std::int32_t* __restrict const edges = out.edges.data();
-  for (int i = 0; i < count; ++i) {
-    edges[i] = (holds(limits, u0[i + 1] - u0[i], v0[i + 1] - v0[i], z0[i + 1] - z0[i]) & kAb) |
-               (holds(limits, u1[i + 1] - u1[i], v1[i + 1] - v1[i], z1[i + 1] - z1[i]) & kCd) |
-               (holds(limits, u1[i] - u0[i], v1[i] - v0[i], z1[i] - z0[i]) & kAd);
-  }
-  for (int i = 0; i < count; ++i) {
-    edges[i] |=
-        (holds(limits, u1[i + 1] - u0[i + 1], v1[i + 1] - v0[i + 1], z1[i + 1] - z0[i + 1]) & kBc) |
-        (holds(limits, u1[i + 1] - u0[i], v1[i + 1] - v0[i], z1[i + 1] - z0[i]) & kAc) |
-        (holds(limits, u1[i] - u0[i + 1], v1[i] - v0[i + 1], z1[i] - z0[i + 1]) & kBd);
-  }
-}
-
-void find_cells(const QuadBlock& block, const Grid& grid, BlockFindings& out) noexcept {
-  const int count = block.count;
-  const std::int32_t* const u0 = block.u_above;
-  const std::int32_t* const v0 = block.v_above;
-  const float* const z0 = block.z_above_mm;
-  const std::int32_t* const u1 = block.u_below;
-  const std::int32_t* const v1 = block.v_below;
-  const float* const z1 = block.z_below_mm;
-  const std::int32_t* __restrict const edges = out.edges.data();
-  auto* __restrict const finding = reinterpret_cast<std::int32_t*>(out.finding.data());
-  std::int32_t* __restrict const out_column = out.column.data();
-  std::int32_t* __restrict const out_row = out.row.data();
-  float* __restrict const out_height_mm = out.height_mm.data();
-  std::int32_t* __restrict const nearest = out.nearest.data();
   const std::int32_t width_px = grid.width_px;
   const std::int32_t height_px = grid.height_px;
-  for (int i = 0; i < count; ++i) {
-    // Places are odd and centres even: the first centre beyond u is (u >> bits) + 1.
-    const std::int32_t u_min = smaller(smaller(u0[i], u0[i + 1]), smaller(u1[i], u1[i + 1]));
-    const std::int32_t u_max = larger(larger(u0[i], u0[i + 1]), larger(u1[i], u1[i + 1]));
-    const std::int32_t v_min = smaller(smaller(v0[i], v0[i + 1]), smaller(v1[i], v1[i + 1]));
-    const std::int32_t v_max = larger(larger(v0[i], v0[i + 1]), larger(v1[i], v1[i + 1]));
-    const std::int32_t column = u_max >> kUnitBits;
-    const std::int32_t row = v_max >> kUnitBits;
-    const std::int32_t columns = column - (u_min >> kUnitBits);
-    const std::int32_t rows = row - (v_min >> kUnitBits);
-    const std::int32_t covers = mask(columns > 0) & mask(rows > 0);
-    const std::int32_t one_cell = mask(columns == 1) & mask(rows == 1);
-    const std::int32_t inside =
-        mask(column >= 0) & mask(column < width_px) & mask(row >= 0) & mask(row < height_px);
-
-    // Corners as seen from the centre; what overflows is not one cell, and not looked at.
-    const std::int32_t u = column << kUnitBits;
-    const std::int32_t v = row << kUnitBits;
-    const float ax = static_cast<float>(u0[i] - u), ay = static_cast<float>(v0[i] - v);
-    const float bx = static_cast<float>(u0[i + 1] - u), by = static_cast<float>(v0[i + 1] - v);
-    const float cx = static_cast<float>(u1[i + 1] - u), cy = static_cast<float>(v1[i + 1] - v);
-    const float dx = static_cast<float>(u1[i] - u), dy = static_cast<float>(v1[i] - v);
-    // An edge function of the centre for every edge, and the doubled areas.
-    const float ab = ax * by - ay * bx;
-    const float bc = bx * cy - by * cx;
-    const float cd = cx * dy - cy * dx;
-    const float da = dx * ay - dy * ax;
-    const float ac = ax * cy - ay * cx;
-    const float area_abc = ab + bc - ac;
-    const float area_acd = ac + cd + da;
-    const std::int32_t may_abc = mask((edges[i] & kAbc) == kAbc);
-    const std::int32_t may_acd = mask((edges[i] & kAcd) == kAcd);
-    const std::int32_t in_abc = may_abc & same_side(ab, bc, -ac) & mask(area_abc != 0.0F);
-    const std::int32_t in_acd = may_acd & same_side(ac, cd, da) & mask(area_acd != 0.0F);
-
-    // The triangle over the centre: a, c, and b or d. On the diagonal both are right, unless the
-    // quad is folded over itself.
-    const float weight_third = select(in_abc, -ac, ac);
-    const float weight_c = select(in_abc, ab, da);
-    const float area = select(in_abc, area_abc, area_acd);
-    const float third_mm = select(in_abc, z0[i + 1] - z0[i], z1[i] - z0[i]);
-    const float third_x = select(in_abc, bx, dx);
-    const float third_y = select(in_abc, by, dy);
-    const std::int32_t folded = in_abc & in_acd & mask(area_abc * area_acd < 0.0F);
-    const float rise = weight_third * third_mm + weight_c * (z1[i + 1] - z0[i]);
-    out_height_mm[i] = z0[i] + rise / area;
-
-    const float to_a = ax * ax + ay * ay;
-    const float to_third = third_x * third_x + third_y * third_y;
-    const float to_c = cx * cx + cy * cy;
-    const std::int32_t third_is_nearer = mask(to_third < to_a);
-    const float to_a_or_third = select(third_is_nearer, to_third, to_a);
-    const std::int32_t a_or_third = third_is_nearer & select(in_abc, 1, 3);
-    nearest[i] = select(mask(to_c < to_a_or_third), 2, a_or_third);
-
-    // The second diagonal is another's business, and never better when the first has a triangle.
-    const std::int32_t first = may_abc | may_acd;
-    const std::int32_t second = mask((edges[i] & kAbd) == kAbd) | mask((edges[i] & kBcd) == kBcd);
-    const std::int32_t simple = first & one_cell & ~folded;
-    const std::int32_t hit = simple & inside & (in_abc | in_acd);
-    const std::int32_t rest = covers & (first | second) & ~simple;
-    finding[i] = (hit & kOneCell) | (rest & kTriangles) | kNothing;
-    out_column[i] = column;
-    out_row[i] = row;
+  for (int i = 0; i < block.count; i += kLanes) {
+    const Quads quads(block, i);
+    const Int4 edges = edges_of(limits, quads);
+    const Int4 may_abc = (edges & kAbc) == kAbc;
+    const Int4 may_acd = (edges & kAcd) == kAcd;
+    // The second diagonal never has more triangles when the first has one.
+    const Int4 first = may_abc | may_acd;
+    const Int4 second = ((edges & kAbd) == kAbd) | ((edges & kBcd) == kBcd);
+    const Boxes box(quads);
+    const Hits hits(quads, box, may_abc, may_acd);
+    const Int4 inside =
+        (box.column >= 0) & (box.column < width_px) & (box.row >= 0) & (box.row < height_px);
+    const Int4 covers = (box.columns > 0) & (box.rows > 0);
+    const Int4 simple = first & (box.columns == 1) & (box.rows == 1) & ~hits.folded;
+    const Int4 finding =
+        (simple & inside & hits.covered & static_cast<std::int32_t>(Finding::kOneCell)) |
+        (covers & (first | second) & ~simple & static_cast<std::int32_t>(Finding::kTriangles));
+    store(out.finding.data() + i, finding);
+    store(out.edges.data() + i, edges);
+    store(out.column.data() + i, box.column);
+    store(out.row.data() + i, box.row);
+    store(out.height_mm.data() + i, hits.height_mm);
+    store(out.nearest.data() + i, hits.nearest);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// A block of neighbouring quads between two scan rows, judged side by side in loops that run on
-// vectors. Most quads of a scan about as dense as the map hold one cell's centre or none: these are
-// finished here; the rest is left to triangle.hpp.
+// A block of neighbouring quads between two scan rows, judged four at a time. Most quads of a scan
+// about as dense as the map hold one cell's centre or none: these are finished here; the rest is
+// left to triangle.hpp.
 //
 // The arithmetic of the common case is exact in float: seen from the only centre in its box, a
 // corner is less than a cell away, so places are odd numbers below 2^12, their products are below
@@ -18,7 +18,12 @@ inline constexpr int kBlock = 64;  // quads
 
 /// A quad's corners are a (above, left), b (above, right), c (below, right), d (below, left); bits
 /// of its edges that hold.
-enum Edge : std::int32_t { kAb = 1, kBc = 2, kCd = 4, kAd = 8, kAc = 16, kBd = 32 };
+inline constexpr std::int32_t kAb = 1;
+inline constexpr std::int32_t kBc = 2;
+inline constexpr std::int32_t kCd = 4;
+inline constexpr std::int32_t kAd = 8;
+inline constexpr std::int32_t kAc = 16;
+inline constexpr std::int32_t kBd = 32;
 
 /// What an edge may measure, in units of the grid.
 struct EdgeLimits {
@@ -28,6 +33,7 @@ struct EdgeLimits {
 };
 
 /// The corners of `count` quads: entry i of each array is a or d of quad i, entry i + 1 its b or c.
+/// kRowPadding entries more can be read.
 struct QuadBlock {
   const std::int32_t* u_above;
   const std::int32_t* v_above;
@@ -45,7 +51,7 @@ enum class Finding : std::int32_t {
 };
 
 struct BlockFindings {
-  std::array<std::int32_t, kBlock> edges;  ///< Bits of Edge.
+  std::array<std::int32_t, kBlock> edges;  ///< Bits of those that hold.
   std::array<Finding, kBlock> finding;
   std::array<std::int32_t, kBlock> column;
   std::array<std::int32_t, kBlock> row;
@@ -56,9 +62,8 @@ struct BlockFindings {
 /// False when no quad of the block can hold a cell's centre.
 [[nodiscard]] bool covers_any(const QuadBlock& block) noexcept;
 
-void judge_edges(const QuadBlock& block, const EdgeLimits& limits, BlockFindings& out) noexcept;
-
-/// Reads out.edges, writes the rest.
-void find_cells(const QuadBlock& block, const Grid& grid, BlockFindings& out) noexcept;
+/// Finds what each quad of the block does to the map.
+void find_cells(const QuadBlock& block, const EdgeLimits& limits, const Grid& grid,
+                BlockFindings& out) noexcept;
 
 }  // namespace flatpose::rectify

@@ -17,9 +17,14 @@ bool all_finite(const double* values, int count) noexcept {
 }  // namespace
 
 ScanRow ScanRow::take(Arena& arena, int width_px) noexcept {
-  const auto count = static_cast<std::size_t>(width_px);
-  return {arena.take<std::int32_t>(count), arena.take<std::int32_t>(count),
-          arena.take<float>(count)};
+  const auto count = static_cast<std::size_t>(width_px) + kRowPadding;
+  const ScanRow row{arena.take<std::int32_t>(count), arena.take<std::int32_t>(count),
+                    arena.take<float>(count)};
+  if (row.z_mm.empty()) return row;
+  std::fill(row.u.end() - kRowPadding, row.u.end(), 0);
+  std::fill(row.v.end() - kRowPadding, row.v.end(), 0);
+  std::fill(row.z_mm.end() - kRowPadding, row.z_mm.end(), kMissing);
+  return row;
 }
 
 ScanToGrid::ScanToGrid(const Pose& work_T_scan, const Grid& grid) noexcept {

@@ -28,7 +28,10 @@ inline constexpr int kScanSideMax_px = 65535;     ///< Pixels along a side of a 
 inline constexpr int kScanPointsMax = 1 << 26;    ///< Pixels of a scan.
 inline constexpr double kCoordinateMax_mm = 1e6;  ///< A larger coordinate is no measurement.
 
-/// Column, row and height of each point of a scan row. A missing point has a NaN height.
+inline constexpr int kRowPadding = 4;
+
+/// Column, row and height of each point of a scan row, and of kRowPadding missing points beyond. A
+/// missing point has a NaN height.
 struct ScanRow {
   std::span<std::int32_t> u;  ///< Column in units of 1 / kUnitsPerCell.
   std::span<std::int32_t> v;  ///< Row, likewise.

@@ -13,11 +13,11 @@ namespace {
 
 // ---- the pass over all points ----
 
-constexpr int kLanes = 8;
+constexpr int kBatch = 8;  // points side by side
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <class T>
-using Lanes = std::array<T, kLanes>;
+using Lanes = std::array<T, kBatch>;
 
 template <class T>
 constexpr Lanes<T> lanes_of(T value) {
@@ -56,11 +56,11 @@ bool is_wild(float value) noexcept {
   return (std::fabs(value) > static_cast<float>(kCoordinateMax_mm)) & (value == value);
 }
 
-/// Adds the points of kLanes pixels. A missing point fails every comparison: it makes all three
+/// Adds the points of kBatch pixels. A missing point fails every comparison: it makes all three
 /// coordinates NaN.
 void add(const Affine& work_T_scan, const Lanes<float>& x, const Lanes<float>& y,
          const Lanes<float>& z, Extent& extent) noexcept {
-  for (int i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < kBatch; ++i) {
     const std::int32_t wild = is_wild(x[i]) | is_wild(y[i]) | is_wild(z[i]);
     extent.wild[i] |= wild;
     const float sum = x[i] + y[i] + z[i];
@@ -70,7 +70,7 @@ void add(const Affine& work_T_scan, const Lanes<float>& x, const Lanes<float>& y
     const float* const m = work_T_scan.m + 4 * k;
     Lanes<float>& low = extent.min_mm[k];
     Lanes<float>& high = extent.max_mm[k];
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kBatch; ++i) {
       const float w = m[0] * x[i] + m[1] * y[i] + m[2] * z[i] + m[3];
       low[i] = w < low[i] ? w : low[i];
       high[i] = w > high[i] ? w : high[i];
@@ -87,16 +87,16 @@ void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
   const float* ys = scan.y_mm + skip;
   const float* zs = scan.z_mm + skip;
   Lanes<float> x, y, z;
-  for (int c = 0; c < scan.width_px; c += kLanes) {
-    const int count = std::min(kLanes, scan.width_px - c);
-    if (count < kLanes) x = y = z = lanes_of(std::numeric_limits<float>::quiet_NaN());
+  for (int c = 0; c < scan.width_px; c += kBatch) {
+    const int count = std::min(kBatch, scan.width_px - c);
+    if (count < kBatch) x = y = z = lanes_of(std::numeric_limits<float>::quiet_NaN());
     for (int i = 0; i < count; ++i) {
       x[i] = xs[i * stride];
       y[i] = ys[i * stride];
       z[i] = zs[i * stride];
     }
     add(work_T_scan, x, y, z, extent);
-    xs += kLanes * stride, ys += kLanes * stride, zs += kLanes * stride;
+    xs += kBatch * stride, ys += kBatch * stride, zs += kBatch * stride;
   }
 }
 

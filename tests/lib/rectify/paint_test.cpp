@@ -10,7 +10,7 @@
 namespace flatpose::rectify {
 namespace {
 
-constexpr double kPlaneTolerance_mm = 1e-3;  // 1/4096 of a cell, on a slope, and float rounding
+constexpr double kPlaneTolerance_mm = 1e-3;  // 1/2048 of a cell, on a slope, and float rounding
 
 void paint_ok(const Scan& scan, const Pose& work_T_scan, const PaintConfig& config, Map& map) {
   Scratch scratch(paint_required_bytes(scan.width_px));
@@ -163,7 +163,7 @@ std::vector<OraclePoint> oracle_points(const Scan& scan, const Pose& work_T_scan
   std::vector<OraclePoint> points;
   for (int i = 0; i < scan.width_px * scan.height_px; ++i) {
     const Vec3 p = work_T_scan * scan.view()(i % scan.width_px, i / scan.width_px);
-    const auto snap = [](double cells) { return (std::floor(cells * 4096.0) + 0.5) / 4096.0; };
+    const auto snap = [](double cells) { return (std::floor(cells * 2048.0) + 0.5) / 2048.0; };
     points.push_back({is_valid(p), snap(grid.column_of(p.x)), snap(grid.row_of(p.y)),
                       static_cast<double>(static_cast<float>(p.z))});
   }
