@@ -35,8 +35,7 @@ class NormalEquations {
   void add(double residual, const Vector<N>& row, double weight = 1.0,
            const RobustLoss& loss = {}) noexcept {
     const LossValue at = loss(residual);
-    // An infinite residual would hide behind a loss that levels off.
-    cost_ += std::isfinite(residual) ? weight * at.cost : residual - residual;
+    cost_ += weight * at.cost;
     add_weighted(residual, row, weight * at.weight);
     ++residual_count_;
   }
@@ -73,7 +72,8 @@ class NormalEquations {
   [[nodiscard]] double weight_sum() const noexcept { return weight_sum_; }  ///< sum of w omega
   [[nodiscard]] int residual_count() const noexcept { return residual_count_; }
 
-  /// NaN and infinity stay in a sum once they are in it, so the sums alone tell.
+  /// NaN and infinity stay in a sum once they are in it, so the sums alone tell; an infinite
+  /// residual under a loss that levels off too, for 0 times infinity is NaN.
   [[nodiscard]] bool is_finite() const noexcept {
     for (int j = 0; j < N; ++j)
       for (int i = j; i < N; ++i)

@@ -152,6 +152,17 @@ TEST(NormalEquations, EqualTheProductsOfTheStackedJacobian) {
   EXPECT_EQ(equations.residual_count(), kRows);
 }
 
+TEST(NormalEquations, TakeAPriorIntoTheSumsButNotIntoTheCount) {
+  NormalEquations<2> equations;
+  equations.add_prior(1, -3.0, 2.0);
+  EXPECT_EQ(equations.cost(), 9.0);
+  EXPECT_EQ(equations.gradient(), Vector<2>(0.0, -6.0));
+  EXPECT_EQ(equations.hessian(), (Matrix<2>{{0.0, 0.0}, {0.0, 2.0}}));
+  EXPECT_EQ(equations.square_sum(), 18.0);
+  EXPECT_EQ(equations.weight_sum(), 0.0);
+  EXPECT_EQ(equations.residual_count(), 0);
+}
+
 TEST(NormalEquations, NoticeWhatIsNotFiniteEvenUnderALossThatLevelsOff) {
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (const RobustLoss loss : {RobustLoss{}, RobustLoss::huber(1), RobustLoss::tukey(1)}) {
@@ -295,6 +306,16 @@ TEST(Minimize, RejectsATrialThatIsNotFiniteAndGoesOn) {
   EXPECT_GT(nan_count, 0);
   EXPECT_TRUE(is_converged(minimum.termination));
   EXPECT_NEAR(minimum.x[0], 0.01, 1e-9);
+}
+
+TEST(Minimize, RejectsATrialOfLowerCostWhoseDerivativesAreNotFinite) {
+  const auto problem = problem_of<1>([](const Vector<1>& x, NormalEquations<1>* equations) {
+    equations->add(x[0] - 1.0, Vector<1>(x[0] < 1.5 ? kInfinity : 1.0));
+    return true;
+  });
+  const auto minimum = minimize<1>(problem, Vector<1>(4.0));
+  EXPECT_GE(minimum.x[0], 1.5);
+  EXPECT_TRUE(std::isfinite(minimum.hessian(0, 0)));
 }
 
 TEST(Minimize, RejectsATrialThatTheProblemRefusesOrLeavesEmpty) {
@@ -549,6 +570,18 @@ TEST(Covariance, LeavesAParameterFreeThatNoResidualDependsOn) {
   EXPECT_FALSE(spread->is_held(1));
   EXPECT_EQ(spread->matrix(0, 0), 0.25);
   EXPECT_EQ(covariance<2>(Matrix<2>::Zero())->rank, 0);
+}
+
+TEST(Covariance, SharesOfSeveralFreeDirectionsAddUpToTheirCount) {
+  NormalEquations<3> equations;
+  equations.add(1.0, Vector<3>(2.0, -1.0, 3.0));
+  const auto spread = covariance<3>(equations.hessian());
+  ASSERT_TRUE(spread);
+  EXPECT_EQ(spread->rank, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(spread->free_share[i], 2.0 / 3.0, 1e-12);
+  const Vector<3> moved =
+      equations.hessian() * spread->free_directions.leftCols<2>().rowwise().sum();
+  EXPECT_LT(moved.norm(), 1e-12);
 }
 
 TEST(Covariance, RefusesWhatIsNoHessianOrNoVariance) {
