@@ -126,11 +126,14 @@ JumpTest test_jump(const SlopeField& f, int column, int row, float jump_low_mm) 
   if (!(here >= fall_at(f, r, -2.0F) && here >= fall_at(f, r, 2.0F))) return {};
 
   const Vec2f edge = r.at + top_of_parabola(before, here, after) * r.fall;
-  constexpr float kBesideStep_px = 0.75F;
-  if (f.missing_at(edge - kBesideStep_px * r.fall)) return {};
+  // A filled slope below draws the edge toward it by up to a cell, so what lies above is looked for
+  // further off than what lies below.
+  constexpr float kAbove_px = 1.25F;
+  constexpr float kBelow_px = 0.75F;
+  if (f.missing_at(edge - kAbove_px * r.fall)) return {};
   const Sides sides = look_beside(f, edge, r.fall);
   const float excess = here - std::max(0.0F, std::max(sides.before, sides.after));
-  const bool below_missing = f.missing_at(edge + kBesideStep_px * r.fall);
+  const bool below_missing = f.missing_at(edge + kBelow_px * r.fall);
   return {std::min(sides.step_mm, kSmear_px * excess),
           below_missing ? EdgeKind::kMissingBorder : EdgeKind::kJump};
 }

@@ -115,6 +115,22 @@ TEST(EdgeQuality, NoiseOfATenthOfTheStepMovesLittle) {
   }
 }
 
+TEST(EdgeQuality, NoiseBesideASteepTiltedContourMakesFewGhosts) {
+  int ghosts = 0;
+  for (const int samples : {1, 6}) {
+    for (const double step_mm : {4.0, 8.0, 20.0}) {
+      StepScene scene;
+      scene.samples = samples;
+      scene.step_mm = step_mm;
+      scene.noise_mm = 0.4;
+      scene.tilt_rad = 40.0 * kRadPerDeg;
+      ghosts += measure(scene).ghosts;
+    }
+  }
+  std::printf("ghosts in all: %d\n", ghosts);
+  EXPECT_LE(ghosts, 25);
+}
+
 TEST(EdgeQuality, NoisyPlanesOfAnyTiltUpTo45DegreesHaveNextToNoEdges) {
   constexpr int kWidth_px = 600;
   constexpr int kHeight_px = 250;

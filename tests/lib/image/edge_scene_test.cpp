@@ -109,6 +109,26 @@ TEST(Edges, OfAShadowAreTheUpperContourAlone) {
   }
 }
 
+// A slope that the filling made is none: it must not be held against the contour beside it.
+TEST(Edges, BesideMissingCellsAreNotWeakenedByTheFilledSlope) {
+  const auto z = Image<float>::of(kSize, kSize, [](int x, int y) {
+    if (x < 30) return 12.0F;
+    return y >= 10 && y < 50 ? kMissing : 8.0F - 3.0F * static_cast<float>(x - 30);
+  });
+  const Edges edges = edges_of(z);
+  for (int y = 16; y < 44; ++y) EXPECT_TRUE(near_any(edges.points, 29.5, y, 1.0)) << y;
+}
+
+// What is missing to the end of the map is filled along its rows; the step between two such rows
+// was never seen.
+TEST(Edges, AreNotMadeBetweenFilledCells) {
+  const auto z = Image<float>::of(
+      kSize, kSize, [](int x, int y) { return x >= 25 ? kMissing : (y < 30 ? 10.0F : 0.0F); });
+  const Edges edges = edges_of(z);
+  EXPECT_TRUE(near_any(edges.points, 12.0, 29.5, 0.1));
+  for (const EdgePoint& e : edges.points) EXPECT_LT(e.x_px, 25.5F);
+}
+
 TEST(Edges, AreNotMadeByLostPixelsOnATiltedPlane) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> share(0.0F, 1.0F);
