@@ -32,11 +32,17 @@ inline void store(T* to, const Lanes& lanes) noexcept {
 }
 [[nodiscard]] inline Int4 smaller(Int4 a, Int4 b) noexcept { return a < b ? a : b; }
 [[nodiscard]] inline Int4 larger(Int4 a, Int4 b) noexcept { return a > b ? a : b; }
+[[nodiscard]] inline Float4 smaller(Float4 a, Float4 b) noexcept { return a < b ? a : b; }
+[[nodiscard]] inline Float4 larger(Float4 a, Float4 b) noexcept { return a > b ? a : b; }
 [[nodiscard]] inline Float4 absolute(Float4 lanes) noexcept {
   return reinterpret_cast<Float4>(reinterpret_cast<Int4>(lanes) & 0x7fffffff);
 }
 [[nodiscard]] inline bool any(Int4 mask) noexcept {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+[[nodiscard]] inline bool all(Int4 mask) noexcept {
+  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
 }
 
 }  // namespace flatpose::rectify

@@ -13,6 +13,7 @@ constexpr std::int32_t kAbc = kAb | kBc | kAc;
 constexpr std::int32_t kAcd = kAc | kCd | kAd;
 constexpr std::int32_t kAbd = kAb | kBd | kAd;
 constexpr std::int32_t kBcd = kBc | kCd | kBd;
+constexpr std::int32_t kAllEdges = kAbc | kAcd | kBd;
 
 /// One corner of four quads.
 struct Corners {
@@ -33,22 +34,6 @@ struct Quads {
         d{load4(block.u_below + i), load4(block.v_below + i), load4(block.z_below_mm + i)} {}
 };
 
-/// False when an end is missing: its height is NaN.
-Int4 holds(const EdgeLimits& limits, const Corners& p, const Corners& q) noexcept {
-  const Float4 x = to_float(q.u - p.u);
-  const Float4 y = to_float(q.v - p.v);
-  const Float4 length_squared = x * x + y * y;
-  const Float4 beyond_mm = absolute(q.z_mm - p.z_mm) - limits.jump_mm;
-  return (length_squared <= limits.gap_squared) &
-         ((beyond_mm <= 0.0F) | (beyond_mm * beyond_mm <= limits.slope_squared * length_squared));
-}
-
-Int4 edges_of(const EdgeLimits& limits, const Quads& q) noexcept {
-  return (holds(limits, q.a, q.b) & kAb) | (holds(limits, q.b, q.c) & kBc) |
-         (holds(limits, q.c, q.d) & kCd) | (holds(limits, q.a, q.d) & kAd) |
-         (holds(limits, q.a, q.c) & kAc) | (holds(limits, q.b, q.d) & kBd);
-}
-
 /// Cells whose centres lie in the boxes of the quads. Places are odd and centres even: the first
 /// centre beyond u is (u >> bits) + 1.
 struct Boxes {
@@ -62,6 +47,36 @@ struct Boxes {
     rows = row - (smaller(smaller(q.a.v, q.b.v), smaller(q.c.v, q.d.v)) >> kUnitBits);
   }
 };
+
+/// False when an end is missing: its height is NaN.
+Int4 holds(const EdgeLimits& limits, const Corners& p, const Corners& q) noexcept {
+  const Float4 x = to_float(q.u - p.u);
+  const Float4 y = to_float(q.v - p.v);
+  const Float4 length_squared = x * x + y * y;
+  const Float4 beyond_mm = absolute(q.z_mm - p.z_mm) - limits.jump_mm;
+  return (length_squared <= limits.gap_squared) &
+         ((beyond_mm <= 0.0F) | (beyond_mm * beyond_mm <= limits.slope_squared * length_squared));
+}
+
+/// False also when an end is missing.
+Int4 is_level(const EdgeLimits& limits, const Corners& p, const Corners& q) noexcept {
+  return absolute(q.z_mm - p.z_mm) <= limits.jump_mm;
+}
+
+/// Quads that lie within two cells and step nowhere: all six edges hold without a closer look.
+Int4 hold_at_a_glance(const EdgeLimits& limits, const Quads& q, const Boxes& box) noexcept {
+  constexpr float kDiagonalSquared = 8.0F * kUnitsPerCell * kUnitsPerCell;
+  if (limits.gap_squared < kDiagonalSquared) return Int4{};
+  return (box.columns <= 1) & (box.rows <= 1) & is_level(limits, q.a, q.b) &
+         is_level(limits, q.b, q.c) & is_level(limits, q.c, q.d) & is_level(limits, q.a, q.d) &
+         is_level(limits, q.a, q.c) & is_level(limits, q.b, q.d);
+}
+
+Int4 edges_of(const EdgeLimits& limits, const Quads& q) noexcept {
+  return (holds(limits, q.a, q.b) & kAb) | (holds(limits, q.b, q.c) & kBc) |
+         (holds(limits, q.c, q.d) & kCd) | (holds(limits, q.a, q.d) & kAd) |
+         (holds(limits, q.a, q.c) & kAc) | (holds(limits, q.b, q.d) & kBd);
+}
 
 /// A corner as seen from the centre of a cell. Where that is not the box's only one the numbers
 /// mean nothing, and are not looked at.
@@ -82,7 +97,7 @@ struct Seen {
 Float4 edge(const Seen& p, const Seen& q) noexcept { return p.x * q.y - p.y * q.x; }
 
 Int4 same_side(Float4 p, Float4 q, Float4 r) noexcept {
-  return ((p >= 0.0F) & (q >= 0.0F) & (r >= 0.0F)) | ((p <= 0.0F) & (q <= 0.0F) & (r <= 0.0F));
+  return (smaller(smaller(p, q), r) >= 0.0F) | (larger(larger(p, q), r) <= 0.0F);
 }
 
 /// What the first diagonal's triangles make of the only centre in each box.
@@ -143,18 +158,24 @@ void find_cells(const QuadBlock& block, const EdgeLimits& edge_limits, const Gri
   const std::int32_t height_px = grid.height_px;
   for (int i = 0; i < block.count; i += kLanes) {
     const Quads quads(block, i);
-    const Int4 edges = edges_of(limits, quads);
+    const Boxes box(quads);
+    const Int4 covers = (box.columns > 0) & (box.rows > 0);
+    if (!any(covers)) {
+      store(out.finding.data() + i, covers);
+      continue;
+    }
+    const Int4 plain = hold_at_a_glance(limits, quads, box);
+    const Int4 edges = all(plain) ? plain & kAllEdges : edges_of(limits, quads);
     const Int4 may_abc = (edges & kAbc) == kAbc;
     const Int4 may_acd = (edges & kAcd) == kAcd;
     // The second diagonal never has more triangles when the first has one.
     const Int4 first = may_abc | may_acd;
     const Int4 second = ((edges & kAbd) == kAbd) | ((edges & kBcd) == kBcd);
-    const Boxes box(quads);
     const Hits hits(quads, box, may_abc, may_acd);
     const Int4 inside =
         (box.column >= 0) & (box.column < width_px) & (box.row >= 0) & (box.row < height_px);
-    const Int4 covers = (box.columns > 0) & (box.rows > 0);
-    const Int4 simple = first & (box.columns == 1) & (box.rows == 1) & ~hits.folded;
+    const Int4 one_cell = (box.columns == 1) & (box.rows == 1);
+    const Int4 simple = first & one_cell & ~hits.folded;
     const Int4 finding =
         (simple & inside & hits.covered & static_cast<std::int32_t>(Finding::kOneCell)) |
         (covers & (first | second) & ~simple & static_cast<std::int32_t>(Finding::kTriangles));

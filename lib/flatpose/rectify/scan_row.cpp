@@ -38,9 +38,11 @@ ScanToGrid::ScanToGrid(const Pose& work_T_scan, const Grid& grid) noexcept {
   u_[3] = (p.x - grid.x0_mm) * subcells_per_mm + kReach_subcells;
   v_[3] = (p.y - grid.y0_mm) * subcells_per_mm + kReach_subcells;
   z_[3] = p.z;
+  is_straight_ =
+      u_[1] == 0.0 && u_[2] == 0.0 && v_[0] == 0.0 && v_[2] == 0.0 && z_[0] == 0.0 && z_[1] == 0.0;
 }
 
-template <int kStrideFloats>
+template <bool kStraight, int kStrideFloats>
 void ScanToGrid::transform_strided(const RangeImageView& scan, int row,
                                    const ScanRow& out) const noexcept {
   // A stride known when compiling lets the loop run on vectors; 0 stands for any other.
@@ -63,9 +65,9 @@ void ScanToGrid::transform_strided(const RangeImageView& scan, int row,
     const double x = static_cast<double>(xs[c * stride]);
     const double y = static_cast<double>(ys[c * stride]);
     const double z = static_cast<double>(zs[c * stride]);
-    const double u = u0 * x + u1 * y + u2 * z + u3;
-    const double v = v0 * x + v1 * y + v2 * z + v3;
-    const double w_mm = z0 * x + z1 * y + z2 * z + z3;
+    const double u = kStraight ? u0 * x + u3 : u0 * x + u1 * y + u2 * z + u3;
+    const double v = kStraight ? v1 * y + v3 : v0 * x + v1 * y + v2 * z + v3;
+    const double w_mm = kStraight ? z2 * z + z3 : z0 * x + z1 * y + z2 * z + z3;
     // A NaN or infinite coordinate fails one of these: 0 * NaN is NaN.
     const bool seen = (u >= 0.0) & (u < 2.0 * kReach_subcells) & (v >= 0.0) &
                       (v < 2.0 * kReach_subcells) & (std::fabs(w_mm) <= kCoordinateMax_mm);
@@ -78,13 +80,20 @@ void ScanToGrid::transform_strided(const RangeImageView& scan, int row,
   }
 }
 
-void ScanToGrid::transform(const RangeImageView& scan, int row, const ScanRow& out) const noexcept {
+template <bool kStraight>
+void ScanToGrid::transform_any(const RangeImageView& scan, int row,
+                               const ScanRow& out) const noexcept {
   switch (scan.pixel_stride_bytes) {
-    case 1 * sizeof(float): return transform_strided<1>(scan, row, out);
-    case 3 * sizeof(float): return transform_strided<3>(scan, row, out);
-    case 4 * sizeof(float): return transform_strided<4>(scan, row, out);
-    default: return transform_strided<0>(scan, row, out);
+    case 1 * sizeof(float): return transform_strided<kStraight, 1>(scan, row, out);
+    case 3 * sizeof(float): return transform_strided<kStraight, 3>(scan, row, out);
+    case 4 * sizeof(float): return transform_strided<kStraight, 4>(scan, row, out);
+    default: return transform_strided<kStraight, 0>(scan, row, out);
   }
+}
+
+void ScanToGrid::transform(const RangeImageView& scan, int row, const ScanRow& out) const noexcept {
+  if (is_straight_) return transform_any<true>(scan, row, out);
+  transform_any<false>(scan, row, out);
 }
 
 Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept {

@@ -54,12 +54,16 @@ class ScanToGrid {
   void transform(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
 
  private:
-  template <int kStrideFloats>
+  template <bool kStraight>
+  void transform_any(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
+  template <bool kStraight, int kStrideFloats>
   void transform_strided(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
 
   double u_[4];  // column * (units per cell / 2) + what makes it positive within reach
   double v_[4];
   double z_[4];
+  bool
+      is_straight_;  // scan and grid axes agree but for their sense: the common sensor over a plane
 };
 
 /// What must hold of a scan and its pose before anything starts.
