@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPointCountMin = 12;
 constexpr int kCrossingCountMin = 6;
-constexpr int kPatchRadiusMax_px = 8;
+constexpr int kPatchRadiusMax_px = 3;
 
 // The raw points of the footprint: a square patch around each surface point, as large as their
 // spacing, so that nearly every point is used about once.
@@ -142,6 +142,17 @@ int measure(const model::Template& part, const RawScan& raw, const Pose& work_T_
   return found_count;
 }
 
+// Both problems are linear but for the losses: a few steps settle them far below what the points
+// can tell.
+LevenbergMarquardtConfig solver_config() noexcept {
+  LevenbergMarquardtConfig config;
+  config.iteration_limit = 8;
+  config.gradient_tolerance = 1e-6;
+  config.step_tolerance = 1e-6;
+  config.cost_tolerance = 1e-6;
+  return config;
+}
+
 }  // namespace
 
 Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
@@ -154,7 +165,7 @@ Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
   const Vector<3> zero = Vector<3>::Zero();
   for (int round = 0; round < config.round_count; ++round) {
     const SurfaceProblem surface(part, raw, out.work_T_object, config.height_tolerance_mm);
-    const auto flat = minimize<3>(surface, zero);
+    const auto flat = minimize<3>(surface, zero, solver_config());
     if (flat.weight_sum < kPointCountMin) return Status::kTooFewPoints;
     out.work_T_object = moved(out.work_T_object, surface_step(flat.x));
 
@@ -163,7 +174,7 @@ Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
     // The reach shrinks with the rounds: wide to come home, narrow to shut out what is not ours.
     const double reach_mm = std::max(config.search_mm / (round + 1), 1.5 * part.pitch_mm);
     const ContourProblem contour(part, crossings, reach_mm);
-    const auto round_trip = minimize<3>(contour, zero);
+    const auto round_trip = minimize<3>(contour, zero, solver_config());
     if (round_trip.weight_sum < kCrossingCountMin) return Status::kTooFewPoints;
     out.work_T_object = moved(out.work_T_object, contour_step(part.symmetry, round_trip.x));
 

@@ -13,28 +13,23 @@ enum class Standing { kOn, kBelow, kAbove, kMissing };
 // A walk along one scan line in the object's frame.
 class Line {
  public:
-  Line(const RawScan& raw, const Pose& object_T_scan, double surface_z_mm,
-       double tolerance_mm) noexcept
-      : raw_(raw),
-        object_T_scan_(object_T_scan),
-        surface_z_mm_(surface_z_mm),
-        tolerance_mm_(tolerance_mm) {}
+  Line(const RawScan& raw, const Pose& object_T_scan, double low_mm, double high_mm) noexcept
+      : raw_(raw), object_T_scan_(object_T_scan), low_mm_(low_mm), high_mm_(high_mm) {}
 
   Standing at(Pixel pixel, Vec3* p_object_mm) const noexcept {
     if (!raw_.scan.contains(pixel.column, pixel.row)) return Standing::kMissing;
     const Vec3 p_scan_mm = raw_.scan(pixel.column, pixel.row);
     if (!is_valid(p_scan_mm)) return Standing::kMissing;
     *p_object_mm = object_T_scan_ * p_scan_mm;
-    const double above_mm = p_object_mm->z - surface_z_mm_;
-    if (above_mm > tolerance_mm_) return Standing::kAbove;
-    return above_mm < -tolerance_mm_ ? Standing::kBelow : Standing::kOn;
+    if (p_object_mm->z > high_mm_) return Standing::kAbove;
+    return p_object_mm->z < low_mm_ ? Standing::kBelow : Standing::kOn;
   }
 
  private:
   const RawScan& raw_;
   const Pose& object_T_scan_;
-  double surface_z_mm_;
-  double tolerance_mm_;
+  double low_mm_;
+  double high_mm_;
 };
 
 struct Step {
@@ -94,7 +89,11 @@ bool find_start(const RawScan& raw, const Pose& work_T_object, const model::Cont
 Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
                           const model::ContourPoint& c, const RawContourConfig& config) noexcept {
   const Pose object_T_scan = work_T_object.inverse() * raw.work_T_scan;
-  const Line line(raw, object_T_scan, c.z_mm, config.tolerance_mm);
+  // A surface ends where it has fallen by about half of the step: sensors round the edge that they
+  // see last, and a bound near the surface would cut there.
+  constexpr double kStepShare = 0.4;
+  const double fall_mm = std::max(config.tolerance_mm, kStepShare * static_cast<double>(c.step_mm));
+  const Line line(raw, object_T_scan, c.z_mm - fall_mm, c.z_mm + config.tolerance_mm);
   Pixel pixel;
   Vec3 last_mm;
   Step step;

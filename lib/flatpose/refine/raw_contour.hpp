@@ -11,7 +11,7 @@ namespace flatpose::refine {
 
 struct RawContourConfig {
   double search_mm = 2.0;  ///< A contour farther than this from where it is expected is not taken.
-  double tolerance_mm = 1.0;  ///< A point this near to the surface's height lies on it.
+  double tolerance_mm = 1.0;  ///< A point no higher than this above the surface lies on it.
 };
 
 struct Crossing {

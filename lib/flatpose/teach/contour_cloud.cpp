@@ -8,8 +8,11 @@ namespace flatpose::teach {
 namespace {
 
 constexpr int kContourCountMin = 8;
-// A contour's piece shorter than this many cells is a stray edge.
+// A contour's piece shorter than this many cells, or than this share of the part, is a stray edge.
 constexpr int kChainCellsMin = 8;
+constexpr double kChainShareMin = 0.04;
+// A contour stands this far out of the noise in the teach scan, so that it will in others.
+constexpr double kStepOverNoiseMin = 8.0;
 // Edges around a corner disagree about their direction; where the mean of unit directions is
 // shorter than this, the point holds no direction well and is left out.
 constexpr float kCoherenceMin = 0.93F;
@@ -84,12 +87,17 @@ class ContourBuilder {
       const image::EdgePoint& e = scene_.edges[i];
       if (edge_at_(e.column, e.row) != static_cast<std::int32_t>(i) || chain_[i] != 0) continue;
       const int length = follow(static_cast<std::int32_t>(i));
-      if (length >= kChainCellsMin) continue;
+      if (length >= chain_cells_min()) continue;
       for (int k = 0; k < length; ++k) {
         const image::EdgePoint& dropped = scene_.edges[candidates_[k]];
         edge_at_(dropped.column, dropped.row) = -1;
       }
     }
+  }
+
+  [[nodiscard]] int chain_cells_min() const noexcept {
+    return std::max(kChainCellsMin,
+                    static_cast<int>(kChainShareMin * std::sqrt(1.0 * mask_.cell_count)));
   }
 
   // Lists the chain that starts at an edge in candidates_, breadth first.

@@ -11,14 +11,14 @@ namespace flatpose::teach {
 /// Offsets of the contour measured in one or more scans.
 class ContourMean {
  public:
-  /// Measures every contour point in a scan where the part lies at the given pose.
+  /// Measures every contour point, on the scan lines around it, in a scan where the part lies at
+  /// the given pose.
   void add(const model::Template& part, const refine::RawScan& raw, const Pose& work_T_object,
            const refine::RawContourConfig& config) noexcept;
 
-  /// Shifts the contour along its normals by the mean over scans, smoothed along the contour over
-  /// `reach_mm`: the offset of a single scan line is off by up to half a pitch. Returns the rms of
-  /// what was measured about it.
-  double apply(double reach_mm, model::Template& part) noexcept;
+  /// Shifts the contour along its normals by the mean over scans and forgets them. Returns the rms
+  /// of the shifts.
+  double apply(model::Template& part) noexcept;
 
  private:
   std::array<double, model::kContourPointCountMax> sum_mm_{};

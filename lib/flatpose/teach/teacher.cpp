@@ -236,13 +236,11 @@ class Lesson {
     return {2.5 * std::max(part_.pitch_mm, 0.5 * part_.cell_mm), tolerance_mm};
   }
 
-  [[nodiscard]] double smooth_reach_mm() const noexcept { return 6.0 * part_.pitch_mm; }
-
   void sharpen(const TeachScan& source, const scene::Scene& scene) noexcept {
     const refine::RawScan raw{source.scan, source.frames.work_T_scan, &scene.map};
     mean_ = {};
     mean_.add(part_, raw, work_T_object_, raw_config());
-    report_.contour_rms_mm = mean_.apply(smooth_reach_mm(), part_);
+    report_.contour_rms_mm = mean_.apply(part_);
     report_.scan_count_used = 1;
   }
 
@@ -263,7 +261,7 @@ class Lesson {
       mean_.add(part_, raw, work_T_object, raw_config());
       ++report_.scan_count_used;
     }
-    (void)mean_.apply(smooth_reach_mm(), part_);
+    (void)mean_.apply(part_);
     return Status::kOk;
   }
 
