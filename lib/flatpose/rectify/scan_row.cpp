@@ -101,6 +101,7 @@ Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept 
   const double position_mm[] = {p.x, p.y, p.z};
   if (!all_finite(position_mm, 3) || !all_finite(work_T_scan.rotation.m.data(), 9))
     return Status::kNotFinite;
+  if (norm(p) > 2.0 * kCoordinateMax_mm) return Status::kInvalidArgument;
   if (scan.width_px < 0 || scan.height_px < 0) return Status::kInvalidArgument;
   if (scan.size() == 0) return Status::kOk;
   if (scan.x_mm == nullptr || scan.y_mm == nullptr || scan.z_mm == nullptr)

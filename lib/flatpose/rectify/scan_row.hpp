@@ -67,7 +67,8 @@ class ScanToGrid {
 };
 
 /// What must hold of a scan and its pose before anything starts.
-/// Fails: kNotFinite (pose), kInvalidArgument (size, planes, strides), kTooLarge.
+/// Fails: kNotFinite (pose), kInvalidArgument (size, planes, strides, a pose kilometres away),
+/// kTooLarge.
 [[nodiscard]] Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept;
 
 /// What must hold of the arguments of every method, check_scan() included.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "flatpose/rectify/lanes.hpp"
 #include "flatpose/rectify/scan_row.hpp"
 
 namespace flatpose::rectify {
@@ -13,68 +14,39 @@ namespace {
 
 // ---- the pass over all points ----
 
-constexpr int kBatch = 8;  // points side by side
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Float4 kMissing4 = std::numeric_limits<float>::quiet_NaN() + Float4{};
 
-template <class T>
-using Lanes = std::array<T, kBatch>;
-
-template <class T>
-constexpr Lanes<T> lanes_of(T value) {
-  Lanes<T> lanes{};
-  lanes.fill(value);
-  return lanes;
-}
-
-/// Count and box in lanes side by side, so that the loop runs on vectors and still sums up in one
-/// order everywhere.
+/// Count and box, four points side by side.
 struct Extent {
-  std::array<Lanes<float>, 3> min_mm = {lanes_of(kInfinity), lanes_of(kInfinity),
-                                        lanes_of(kInfinity)};
-  std::array<Lanes<float>, 3> max_mm = {lanes_of(-kInfinity), lanes_of(-kInfinity),
-                                        lanes_of(-kInfinity)};
-  Lanes<std::int32_t> valid_count = lanes_of<std::int32_t>(0);
-  Lanes<std::int32_t> wild = lanes_of<std::int32_t>(0);  // not 0: an infinite or giant coordinate
+  std::array<Float4, 3> min_mm = {Float4{} + kInfinity, Float4{} + kInfinity, Float4{} + kInfinity};
+  std::array<Float4, 3> max_mm = {Float4{} - kInfinity, Float4{} - kInfinity, Float4{} - kInfinity};
+  Int4 valid_count{};
+  Int4 wild{};  // set where a coordinate was infinite or giant
 };
 
-struct Affine {
-  float m[12];  // three rows of rotation and translation
-};
+/// Three rows of rotation and translation. The box needs no more than float.
+using Affine = std::array<float, 12>;
 
 Affine affine_of(const Pose& pose) noexcept {
   Affine affine{};
-  const double t[] = {pose.position_mm.x, pose.position_mm.y, pose.position_mm.z};
+  const double t_mm[] = {pose.position_mm.x, pose.position_mm.y, pose.position_mm.z};
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k)
-      affine.m[4 * i + k] = static_cast<float>(pose.rotation.m[3 * i + k]);
-    affine.m[4 * i + 3] = static_cast<float>(t[i]);
+    for (int k = 0; k < 3; ++k) affine[4 * i + k] = static_cast<float>(pose.rotation.m[3 * i + k]);
+    affine[4 * i + 3] = static_cast<float>(t_mm[i]);
   }
   return affine;
 }
 
-bool is_wild(float value) noexcept {
-  return (std::fabs(value) > static_cast<float>(kCoordinateMax_mm)) & (value == value);
-}
-
-/// Adds the points of kBatch pixels. A missing point fails every comparison: it makes all three
-/// coordinates NaN.
-void add(const Affine& work_T_scan, const Lanes<float>& x, const Lanes<float>& y,
-         const Lanes<float>& z, Extent& extent) noexcept {
-  for (int i = 0; i < kBatch; ++i) {
-    const std::int32_t wild = is_wild(x[i]) | is_wild(y[i]) | is_wild(z[i]);
-    extent.wild[i] |= wild;
-    const float sum = x[i] + y[i] + z[i];
-    extent.valid_count[i] += sum == sum ? 1 : 0;
-  }
+/// Adds four points. A missing one fails every comparison: it makes all three coordinates NaN.
+void add(const Affine& m, Float4 x, Float4 y, Float4 z, Extent& extent) noexcept {
+  constexpr auto kMax_mm = static_cast<float>(kCoordinateMax_mm);
+  extent.wild |= (absolute(x) > kMax_mm) | (absolute(y) > kMax_mm) | (absolute(z) > kMax_mm);
+  extent.valid_count -= (x == x) & (y == y) & (z == z);  // true is -1
   for (std::size_t k = 0; k < 3; ++k) {
-    const float* const m = work_T_scan.m + 4 * k;
-    Lanes<float>& low = extent.min_mm[k];
-    Lanes<float>& high = extent.max_mm[k];
-    for (int i = 0; i < kBatch; ++i) {
-      const float w = m[0] * x[i] + m[1] * y[i] + m[2] * z[i] + m[3];
-      low[i] = w < low[i] ? w : low[i];
-      high[i] = w > high[i] ? w : high[i];
-    }
+    const Float4 w_mm = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
+    extent.min_mm[k] = smaller(w_mm, extent.min_mm[k]);
+    extent.max_mm[k] = larger(w_mm, extent.max_mm[k]);
   }
 }
 
@@ -83,31 +55,34 @@ void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
   constexpr auto kFloatBytes = static_cast<std::ptrdiff_t>(sizeof(float));
   const std::ptrdiff_t stride = scan.pixel_stride_bytes / kFloatBytes;
   const std::ptrdiff_t skip = row * (scan.row_stride_bytes / kFloatBytes);
-  const float* xs = scan.x_mm + skip;
-  const float* ys = scan.y_mm + skip;
-  const float* zs = scan.z_mm + skip;
-  Lanes<float> x, y, z;
-  for (int c = 0; c < scan.width_px; c += kBatch) {
-    const int count = std::min(kBatch, scan.width_px - c);
-    if (count < kBatch) x = y = z = lanes_of(std::numeric_limits<float>::quiet_NaN());
-    for (int i = 0; i < count; ++i) {
-      x[i] = xs[i * stride];
-      y[i] = ys[i * stride];
-      z[i] = zs[i * stride];
-    }
-    add(work_T_scan, x, y, z, extent);
-    xs += kBatch * stride, ys += kBatch * stride, zs += kBatch * stride;
+  const auto four = [stride](const float* p) {
+    return Float4{p[0], p[stride], p[2 * stride], p[3 * stride]};
+  };
+  Extent local = extent;  // in registers
+  int c = 0;
+  for (; c + kLanes <= scan.width_px; c += kLanes) {
+    const std::ptrdiff_t at = skip + c * stride;
+    add(work_T_scan, four(scan.x_mm + at), four(scan.y_mm + at), four(scan.z_mm + at), local);
   }
+  for (; c < scan.width_px; ++c) {
+    const std::ptrdiff_t at = skip + c * stride;
+    Float4 x = kMissing4, y = kMissing4, z = kMissing4;
+    x[0] = scan.x_mm[at], y[0] = scan.y_mm[at], z[0] = scan.z_mm[at];
+    add(work_T_scan, x, y, z, local);
+  }
+  extent = local;
 }
 
 void write_extent(const Extent& extent, Survey& out) noexcept {
-  for (const std::int32_t count : extent.valid_count) out.valid_count += count;
+  for (int i = 0; i < kLanes; ++i) out.valid_count += extent.valid_count[i];
   if (out.valid_count == 0) return;
   const auto low = [&](std::size_t k) {
-    return static_cast<double>(*std::min_element(extent.min_mm[k].begin(), extent.min_mm[k].end()));
+    const Float4& v = extent.min_mm[k];
+    return static_cast<double>(std::min({v[0], v[1], v[2], v[3]}));
   };
   const auto high = [&](std::size_t k) {
-    return static_cast<double>(*std::max_element(extent.max_mm[k].begin(), extent.max_mm[k].end()));
+    const Float4& v = extent.max_mm[k];
+    return static_cast<double>(std::max({v[0], v[1], v[2], v[3]}));
   };
   out.min_mm = {low(0), low(1), low(2)};
   out.max_mm = {high(0), high(1), high(2)};
@@ -216,8 +191,7 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
   const Affine affine = affine_of(work_T_scan);
   Extent extent;
   for (int r = 0; r < scan.height_px; ++r) add_row(scan, r, affine, extent);
-  for (const std::int32_t wild : extent.wild)
-    if (wild != 0) return Status::kNotFinite;
+  if (any(extent.wild)) return Status::kNotFinite;
   write_extent(extent, result);
   take_samples(scan, work_T_scan, samples);
   result.pitch_along_row_mm = samples.along_row.median();

@@ -136,6 +136,7 @@ TEST(Survey, RefusesTooLittleScratchAndBadPoses) {
   Pose pose;
   pose.rotation.m[4] = std::nan("");
   EXPECT_EQ(survey_of(scan, pose).status(), Status::kNotFinite);
+  EXPECT_EQ(survey_of(scan, {{}, {1e300, 0, 0}}).status(), Status::kInvalidArgument);
 }
 
 TEST(Survey, ReadsStridedViewsAlike) {
