@@ -15,6 +15,8 @@ namespace {
 
 // Below this share of valid points a scan says nothing about what is there.
 constexpr double kValidShareMin = 0.02;
+// What is this far below the threshold does not rise above it any more.
+constexpr double kHopelessShare = 0.6;
 // Matches may share this much of their visible surface: what leans on each other, not what lies in
 // each other.
 constexpr double kClaimedShareMax = 0.3;
@@ -144,7 +146,13 @@ class Pipeline {
     lm.cost_tolerance = 1e-5;
     instance_count_ = 0;
     for (int i = 0; i < candidate_count_ && !is_late(); ++i) {
-      const auto first = refine::minimize<6>(wide, work_.candidates[i].work_T_object, lm);
+      // A candidate that does not hold even loosely is not worth its refinement.
+      const Pose& start = work_.candidates[i].work_T_object;
+      if (verify(part_, work_.fine, {}, start, settings_.screen).score <
+          kHopelessShare * settings_.score_threshold) {
+        continue;
+      }
+      const auto first = refine::minimize<6>(wide, start, lm);
       const auto second = refine::minimize<6>(narrow, first.x, lm);
       if (is_known(second.x)) continue;
       Instance& instance = work_.instances[instance_count_++];
@@ -181,8 +189,6 @@ class Pipeline {
 
   // The last step on the raw points, and the verdict, best first.
   void accept() noexcept {
-    // What is this far below the threshold does not rise above it by fractions of a cell.
-    constexpr double kHopelessShare = 0.75;
     for (int i = 0; i < instance_count_ && accepted_count_ < config_.max_matches && !is_late();
          ++i) {
       const Instance& instance = work_.instances[i];

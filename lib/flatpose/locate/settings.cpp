@@ -1,6 +1,7 @@
 #include "flatpose/locate/settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flatpose::locate {
 namespace {
@@ -31,6 +32,10 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   // (kEdgeCostMax).
   const double reach_mm = search::kEdgeCostMax / 3.0 * coarse_mm;
   s.search.angle_step_rad = bounded(reach_mm / part.radius_mm, 0.02, 0.25);
+  // A large part is found from farther off than one cell.
+  constexpr double kCellsPerStride = 16.0;
+  const double across_px = std::sqrt(part.area_mm2) / coarse_mm;
+  s.search.stride_px = static_cast<int>(bounded(across_px / kCellsPerStride, 1.0, 2.0));
   s.search.max_tilt_rad = config.max_tilt_rad;
   s.search.planarity_mm = 2.0 * noise_mm + 0.1 * cell_mm;
   s.search.score.use_height = config.use_height;
@@ -50,7 +55,6 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
   s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
   s.narrow = s.wide;
-  s.narrow.contour_count = model::kContourPointCountMax / 2;
   s.narrow.edge_reach_mm = 4.0 * cell_mm;
   s.narrow.height_reach_mm = 2.0 * height_tolerance_mm;
 
@@ -58,6 +62,8 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.polish.search_mm = 2.5 * cell_mm;
 
   s.verify.height_tolerance_mm = height_tolerance_mm;
+  s.screen.height_tolerance_mm = s.wide.height_reach_mm;
+  s.screen.edge_tolerance_px = 2.0 * search::kEdgeCostMax / 3.0;
   s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;
 }

@@ -18,6 +18,7 @@ struct Settings {
   refine::PoseProblemConfig wide;    ///< First refinement: from the grid's distance.
   refine::PoseProblemConfig narrow;  ///< Second: what is near already.
   refine::PolishConfig polish;
+  VerifyConfig screen;  ///< A loose look at a candidate before it is refined.
   VerifyConfig verify;
   double score_threshold = 0.0;
 };

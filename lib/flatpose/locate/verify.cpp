@@ -57,23 +57,56 @@ bool has_edge(const refine::FineImages& images, const Vec3& p_mm, const Vec3& fa
 // lower.
 constexpr double kProbe_px = 2.5;
 
-void judge_contour(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
-                   const Vec3& probe_mm, const VerifyConfig& config, Evidence* evidence) noexcept {
+enum class Verdict { kUnseen, kContradicted, kConfirmed };
+
+Verdict judge_contour(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
+                      const Vec3& probe_mm, const VerifyConfig& config) noexcept {
   const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
-  if (inside == Sight::kNothing || inside == Sight::kAbove) return;
+  if (inside == Sight::kNothing || inside == Sight::kAbove) return Verdict::kUnseen;
   const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
-  if (outside == Sight::kAbove) return;
+  if (outside == Sight::kAbove) return Verdict::kUnseen;
   const bool edge = has_edge(images, p_mm, falling, config.edge_tolerance_px);
-  if (outside == Sight::kNothing && !edge) return;  // the scan ends or is dark here
-  ++evidence->visible_count;
-  if (inside == Sight::kAt && edge) ++evidence->confirmed_count;
+  if (outside == Sight::kNothing && !edge)
+    return Verdict::kUnseen;  // the scan ends or is dark here
+  return inside == Sight::kAt && edge ? Verdict::kConfirmed : Verdict::kContradicted;
 }
 
-double share(const Evidence& evidence) noexcept {
-  return evidence.visible_count > 0
-             ? static_cast<double>(evidence.confirmed_count) / evidence.visible_count
-             : 0.0;
+double share(double confirmed, double visible) noexcept {
+  return visible > 0.0 ? confirmed / visible : 0.0;
 }
+
+// What a contour point weighs: as much as its direction is rare. The two ends of a bar are all that
+// holds it along its length, however short they are, and a web of a larger part lacks just those.
+// With M = mean(n n^T) over the contour, w = n^T M^-1 n / 2 makes every direction in the plane
+// weigh the same and the mean weight one.
+class DirectionWeight {
+ public:
+  explicit DirectionWeight(const model::Template& part) noexcept {
+    double xx = 0, xy = 0, yy = 0;
+    for (const model::ContourPoint& p : part.contour_points()) {
+      xx += static_cast<double>(p.nx) * p.nx;
+      xy += static_cast<double>(p.nx) * p.ny;
+      yy += static_cast<double>(p.ny) * p.ny;
+    }
+    const double count = std::max(1, part.contour_count);
+    const double determinant = (xx * yy - xy * xy) / (count * count);
+    constexpr double kParallel = 0.01;  // contours of hardly more than one direction weigh alike
+    if (determinant < kParallel) return;
+    inverse_xx_ = 0.5 * yy / count / determinant;
+    inverse_xy_ = -0.5 * xy / count / determinant;
+    inverse_yy_ = 0.5 * xx / count / determinant;
+  }
+  double operator()(const model::ContourPoint& p) const noexcept {
+    const double nx = p.nx;
+    const double ny = p.ny;
+    return inverse_xx_ * nx * nx + 2.0 * inverse_xy_ * nx * ny + inverse_yy_ * ny * ny;
+  }
+
+ private:
+  double inverse_xx_ = 1.0;
+  double inverse_xy_ = 0.0;
+  double inverse_yy_ = 1.0;
+};
 
 }  // namespace
 
@@ -90,13 +123,23 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     if (seen == Sight::kAt) ++out.surface.confirmed_count;
   }
   const double probe_mm = kProbe_px * images.grid.cell_mm;
+  const DirectionWeight weight(part);
+  double visible_weight = 0.0;
+  double confirmed_weight = 0.0;
   for (const model::ContourPoint& p : part.contour_points()) {
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
-    judge_contour(images, q_mm, falling, probe_mm * falling, config, &out.contour);
+    const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, config);
+    if (verdict == Verdict::kUnseen) continue;
+    ++out.contour.visible_count;
+    visible_weight += weight(p);
+    if (verdict != Verdict::kConfirmed) continue;
+    ++out.contour.confirmed_count;
+    confirmed_weight += weight(p);
   }
   out.visible = static_cast<double>(out.surface.visible_count) / part.surface_count;
-  out.score = 0.5 * (share(out.surface) + share(out.contour));
+  out.score = share(out.surface.confirmed_count, out.surface.visible_count) *
+              share(confirmed_weight, visible_weight);
   return out;
 }
 

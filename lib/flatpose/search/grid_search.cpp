@@ -78,7 +78,8 @@ class Search {
     place_count_ = 0;
     for (int y = 0; y < images_.grid.height_px; ++y) {
       for (int x = 0; x < images_.grid.width_px; ++x) {
-        const bool planar = is_place(x, y, slope_limit);
+        const bool on_grid = x % config_.stride_px == 0 && y % config_.stride_px == 0;
+        const bool planar = on_grid && is_place(x, y, slope_limit);
         memory_.place_of_cell[cell_index(x, y)] = planar ? place_count_ : -1;
         if (planar) add_place(x, y);
       }
@@ -192,9 +193,9 @@ class Search {
   /// Whether no neighbouring place is better at about the same angle (ties: the earlier place keeps
   /// it).
   [[nodiscard]] bool is_local_minimum(const Place& place, const Best& best) const noexcept {
-    constexpr int kReach_px = 2;
-    for (int dy = -kReach_px; dy <= kReach_px; ++dy) {
-      for (int dx = -kReach_px; dx <= kReach_px; ++dx) {
+    const int reach_px = 2 * config_.stride_px;
+    for (int dy = -reach_px; dy <= reach_px; dy += config_.stride_px) {
+      for (int dx = -reach_px; dx <= reach_px; dx += config_.stride_px) {
         const int x = place.column + dx;
         const int y = place.row + dy;
         if (!images_.missing.contains(x, y)) continue;

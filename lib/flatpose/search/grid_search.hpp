@@ -17,6 +17,8 @@ inline constexpr int kAngleCountMax = 720;
 
 struct GridSearchConfig {
   ScoreConfig score;
+  int stride_px =
+      1;  ///< Only every so many-th cell is a place; the refinement comes home from further.
   double angle_step_rad = 0.12;  ///< Finer costs time in proportion.
   double max_tilt_rad = 0.8;     ///< Steeper places are no hypotheses.
   double planarity_mm = 0.5;  ///< Places whose plane fit leaves more than this are no hypotheses.

@@ -8,16 +8,22 @@
 namespace flatpose::teach {
 namespace {
 
-// Bounds of a part's own threshold: below, a bare plane with a few edges would pass (half of the
-// score is the surface's); above, a part with a fifth of its contour touching others would not.
-constexpr double kThresholdMin = 0.72;
-constexpr double kThresholdMax = 0.90;
-// What is worth looking at when scores are compared; a plane without any contour scores about a
-// half.
-constexpr double kScoreFloor = 0.5;
+// Bounds of a part's own threshold: a place where a third of what should be seen is not is no part,
+// whatever the teach scan held; and a part with a tenth of it spoilt still is one.
+constexpr double kThresholdMin = 0.65;
+constexpr double kThresholdMax = 0.88;
+// Scores of like instances differ by less than this; what resembles the part only is farther off.
+constexpr double kScoreGap = 0.06;
 
-bool is_near(const Pose& a, const Pose& b, double radius_mm) noexcept {
-  return norm(a.position_mm - b.position_mm) < 0.1 * radius_mm;
+// The same place, whatever the turn: judged at the contour's middle, which a turn of a nearly
+// symmetric part leaves.
+bool is_same_place(const model::Template& part, const Pose& a, const Pose& b) noexcept {
+  constexpr double kShare = 0.1;
+  Vec3 middle_mm;
+  for (const model::ContourPoint& p : part.contour_points())
+    middle_mm = middle_mm + Vec3{p.x_mm, p.y_mm, p.z_mm};
+  middle_mm = (1.0 / std::max(1, part.contour_count)) * middle_mm;
+  return norm(a * middle_mm - b * middle_mm) < kShare * part.radius_mm;
 }
 
 void flag(model::Template& part, model::Weakness weakness, bool is_weak) noexcept {
@@ -53,37 +59,33 @@ double turn_share(const model::Template& part) noexcept {
 
 void set_threshold(const locate::LocateResult& everything, const Pose& face_T_object,
                    model::Template& part) noexcept {
-  std::array<double, locate::kMatchCountMax + 2> scores{};
+  std::array<double, locate::kMatchCountMax + 1> scores{};
   int count = 0;
   part.self_score = 0.0;
   for (const locate::Match& match : everything.found()) {
-    if (is_near(match.face_T_object, face_T_object, part.radius_mm)) {
+    if (is_same_place(part, match.face_T_object, face_T_object)) {
       part.self_score = std::max(part.self_score, match.score);
     } else {
       scores[count++] = match.score;
     }
   }
   scores[count++] = everything.rival_score;
-  scores[count++] = kScoreFloor;
   std::sort(scores.begin(), scores.begin() + count, [](double a, double b) { return a > b; });
 
-  double upper = part.self_score;
-  double widest = 0.0;
-  double threshold = kThresholdMin;
-  part.rival_score = kScoreFloor;
+  // Down from the part's own score over those of its like, to the first gap.
+  double lowest_like = part.self_score;
+  part.rival_score = 0.0;
   for (int i = 0; i < count; ++i) {
-    if (scores[i] >= part.self_score || scores[i] < kScoreFloor) continue;
-    if (upper - scores[i] > widest) {
-      widest = upper - scores[i];
-      threshold = 0.5 * (upper + scores[i]);
+    if (scores[i] < lowest_like - kScoreGap) {
       part.rival_score = scores[i];
+      break;
     }
-    upper = scores[i];
+    lowest_like = std::min(lowest_like, scores[i]);
   }
-  part.score_threshold = std::clamp(threshold, kThresholdMin, kThresholdMax);
+  part.score_threshold =
+      std::clamp(0.5 * (lowest_like + part.rival_score), kThresholdMin, kThresholdMax);
   constexpr double kMarginThin = 0.1;
-  flag(part, model::kWeakMarginThin,
-       part.self_score - part.score_threshold < 0.5 * kMarginThin || widest < kMarginThin);
+  flag(part, model::kWeakMarginThin, lowest_like - part.rival_score < kMarginThin);
 }
 
 void find_weakness(model::Template& part) noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flatpose::teach {
 namespace {
@@ -13,9 +14,12 @@ constexpr std::int32_t kOutside = -3;
 // Areas beyond this many are specks: they are counted as background.
 constexpr int kAreaCountMax = 1024;
 constexpr std::int32_t kAreaCellsMin = 12;
+constexpr double kNoiseFactor = 6.0;
 
 struct Area {
   std::int32_t cell_count = 0;
+  std::int32_t missing_count = 0;
+  double height_sum_mm = 0.0;
   std::int32_t upper_count = 0;         ///< Edges that fall away from it ...
   std::int32_t lower_count = 0;         ///< ... and toward it.
   std::int32_t rests_on = kUnassigned;  ///< The area that most edges of its own fall to.
@@ -25,7 +29,10 @@ struct Area {
 class Partition {
  public:
   Partition(const scene::Scene& scene, Arena& arena) noexcept
-      : scene_(scene), width_px_(scene.map.grid.width_px), height_px_(scene.map.grid.height_px) {
+      : scene_(scene),
+        width_px_(scene.map.grid.width_px),
+        height_px_(scene.map.grid.height_px),
+        step_max_mm_(static_cast<float>(kNoiseFactor * scene.noise_mm + scene.map.grid.cell_mm)) {
     label_ = arena.take_image<std::int32_t>(width_px_, height_px_);
     stack_ = arena.take<std::int32_t>(static_cast<std::size_t>(width_px_) *
                                       static_cast<std::size_t>(height_px_));
@@ -91,10 +98,27 @@ class Partition {
     areas_[1].is_part = true;
   }
 
+  /// Counts for every area what is missing in it, and the edges that fall away from it and toward
+  /// it.
   void vote() noexcept {
+    double background_sum_mm = 0.0;
+    double background_count = 0.0;
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        const std::int32_t label = label_(x, y);
+        const bool missing = scene_.missing(x, y) != 0;
+        if (label > 0 && missing) ++areas_[label].missing_count;
+        if (label > 0) areas_[label].height_sum_mm += static_cast<double>(scene_.filled_mm(x, y));
+        if (label != kBackground || missing) continue;
+        background_sum_mm += static_cast<double>(scene_.filled_mm(x, y));
+        background_count += 1.0;
+      }
+    }
+    if (background_count > 0.0) background_mm_ = background_sum_mm / background_count;
     for (const image::EdgePoint& e : scene_.edges) {
       const std::int32_t upper = area_beside(e, -1.0F);
       const std::int32_t lower = area_beside(e, 1.0F);
+      if (upper == lower) continue;  // inside of a rough area
       if (upper > 0) ++areas_[upper].upper_count;
       if (lower > 0) ++areas_[lower].lower_count;
       if (upper > 0 && lower != kUnassigned && areas_[upper].rests_on <= 0)
@@ -102,8 +126,13 @@ class Partition {
     }
   }
 
+  /// Lower than all around it and no higher than the background, which shows through; or hardly
+  /// seen at all.
   [[nodiscard]] bool is_pit(const Area& area) const noexcept {
-    return area.upper_count * 6 < area.lower_count;
+    if (2 * area.missing_count > area.cell_count) return true;
+    const bool lies_low =
+        area.height_sum_mm / area.cell_count < background_mm_ + static_cast<double>(step_max_mm_);
+    return lies_low && area.upper_count * 6 < area.lower_count;
   }
 
   [[nodiscard]] std::int32_t largest() const noexcept {
@@ -175,21 +204,24 @@ class Partition {
   std::int32_t flood(int x, int y, std::int32_t label) noexcept {
     std::int32_t depth = 0;
     std::int32_t count = 0;
-    const auto push = [&](int px, int py) {
+    // Where a contour has a gap, the step of height under it still bars the way.
+    const auto push = [&](int px, int py, float from_mm) {
       if (!label_.contains(px, py) || label_(px, py) != kUnassigned) return;
+      if (std::fabs(scene_.filled_mm(px, py) - from_mm) > step_max_mm_) return;
       label_(px, py) = label;
       stack_[depth++] = py * width_px_ + px;
       ++count;
     };
-    push(x, y);
+    push(x, y, scene_.filled_mm(x, y));
     while (depth > 0) {
       const std::int32_t cell = stack_[--depth];
       const int cx = cell % width_px_;
       const int cy = cell / width_px_;
-      push(cx - 1, cy);
-      push(cx + 1, cy);
-      push(cx, cy - 1);
-      push(cx, cy + 1);
+      const float from_mm = scene_.filled_mm(cx, cy);
+      push(cx - 1, cy, from_mm);
+      push(cx + 1, cy, from_mm);
+      push(cx, cy - 1, from_mm);
+      push(cx, cy + 1, from_mm);
     }
     return count;
   }
@@ -209,10 +241,13 @@ class Partition {
   const scene::Scene& scene_;
   int width_px_;
   int height_px_;
+  float step_max_mm_;  ///< Between neighbouring cells of one surface: noise, and a slope of 45
+                       ///< degrees.
   ImageView<std::int32_t> label_;
   std::span<std::int32_t> stack_;
   std::span<Area> areas_;
   std::int32_t area_count_ = 0;
+  double background_mm_ = -std::numeric_limits<double>::infinity();
   std::int32_t region_cell_count_ = 0;
 };
 
