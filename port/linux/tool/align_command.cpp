@@ -1,0 +1,70 @@
+// flatpose align SCAN -o WORK.json
+
+#include <array>
+#include <memory>
+
+#include "flatpose/core/maths.hpp"
+#include "port/linux/files/work_file.hpp"
+#include "port/linux/tool/command.hpp"
+#include "port/linux/tool/loaded_scan.hpp"
+#include "port/linux/tool/options.hpp"
+#include "port/linux/tool/output_file.hpp"
+#include "port/linux/tool/scan_survey.hpp"
+#include "port/linux/tool/work_plane.hpp"
+
+namespace flatpose::tool {
+namespace {
+
+struct Options {
+  std::string scan_path;
+  std::string work_path;
+  ScanOptions reading;
+};
+
+// Less than this on the plane, and it may be no more than one part's top.
+constexpr double kShareThin = 0.15;
+
+ExitCode run(const Options& options, Report& report) {
+  check_outputs(std::array{options.scan_path}, std::array{options.work_path});
+  const LoadedScan loaded = load_scan(options.scan_path, options.reading);
+  require_points(loaded);
+  const rectify::Survey survey = survey_of(loaded);
+  const double pitch_mm = std::max(survey.pitch_along_row_mm, survey.pitch_along_column_mm);
+  const auto plane =
+      find_work_plane(loaded.scan.view(), loaded.up_sign(), survey.noise_sigma_mm, pitch_mm);
+  if (!plane)
+    throw NothingFound(loaded.path, "no plane carries enough of its points",
+                       "scan the empty work plane, or give the other side by --up");
+
+  port::WorkFile work;
+  work.work_T_scan = plane->work_T_scan;
+  work.up = loaded.scan.up;
+  work.quality = port::WorkQuality{plane->rms_mm, plane->inlier_share, plane->inlier_count};
+  port::write_work_file(options.work_path, work);
+  if (plane->inlier_share < kShareThin)
+    report.warnings.push_back(
+        formatted("only %.0f %% of the points lie on the work plane: align with it empty",
+                  100.0 * plane->inlier_share));
+  const Vec3 origin_mm = plane->work_T_scan.inverse().position_mm;
+  report.text = formatted(
+      "work plane of %s (up %s by %s)\n  tilt %.3f deg, rms %.4f mm, %.1f %% of the points\n"
+      "  origin at %.3f %.3f %.3f mm of the scan\n",
+      loaded.path.c_str(), port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str(),
+      plane->tilt_rad * kDegPerRad, plane->rms_mm, 100.0 * plane->inlier_share, origin_mm.x,
+      origin_mm.y, origin_mm.z);
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+Action add_align(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("SCAN", options->scan_path, "a scan that shows the work plane")->required();
+  app.add_option("-o,--output", options->work_path, "the work plane")
+      ->type_name("WORK.json")
+      ->required();
+  add_reading(app, options->reading);
+  return [options](Report& report) { return run(*options, report); };
+}
+
+}  // namespace flatpose::tool

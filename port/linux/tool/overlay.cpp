@@ -1,0 +1,336 @@
+#include "port/linux/tool/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "port/linux/files/input_error.hpp"
+#include "port/linux/tool/canvas.hpp"
+#include "port/linux/tool/number_text.hpp"
+
+namespace flatpose::tool {
+namespace {
+
+constexpr int kSide_px = 1200;
+constexpr int kWidthMin_px = 720;
+constexpr int kHeightMin_px = 240;
+constexpr double kFooter_px = 54.0;
+constexpr std::size_t kTitleBytesMax = 200;
+
+constexpr Colour kPaper{0.115, 0.125, 0.145};
+constexpr Colour kInk{0.93, 0.94, 0.95};
+constexpr Colour kFaint{0.62, 0.66, 0.70};
+constexpr Colour kDark{0.04, 0.05, 0.06};
+constexpr Colour kContour{1.0, 0.72, 0.10};
+constexpr Colour kSurface{0.30, 0.85, 0.95};
+constexpr Colour kAnchor{0.95, 0.35, 0.85};
+constexpr Colour kAxes[] = {{0.98, 0.27, 0.25}, {0.25, 0.86, 0.35}, {0.30, 0.55, 1.0}};
+
+struct Place {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+/// Where the map stands on the paper.
+struct Sheet {
+  rectify::Grid grid;
+  double scale = 1.0;  // pixels of the picture a cell
+  double left = 0.0;
+  double top = 0.0;
+  double width = 0.0;
+  double height = 0.0;
+
+  [[nodiscard]] Place place(const Vec3& p_work_mm) const noexcept {
+    return {left + (grid.column_of(p_work_mm.x) + 0.5) * scale,
+            top + (grid.height_px - 0.5 - grid.row_of(p_work_mm.y)) * scale};
+  }
+  [[nodiscard]] double px_per_mm() const noexcept { return scale / grid.cell_mm; }
+};
+
+// Contour points lie in no order along the contour. Each becomes a dash along its tangent, long
+// enough to meet its neighbours'.
+std::vector<double> dash_half_lengths_mm(const model::Template& part) {
+  const auto points = part.contour_points();
+  std::vector<double> lengths;
+  for (const model::ContourPoint& p : points) {
+    double ahead = std::numeric_limits<double>::max();
+    double behind = ahead;
+    for (const model::ContourPoint& q : points) {
+      const double dx = static_cast<double>(q.x_mm - p.x_mm);
+      const double dy = static_cast<double>(q.y_mm - p.y_mm);
+      const double along = -static_cast<double>(p.ny) * dx + static_cast<double>(p.nx) * dy;
+      const double across =
+          std::fabs(static_cast<double>(p.nx) * dx + static_cast<double>(p.ny) * dy);
+      if (across > 0.5 * std::fabs(along) || along == 0.0) continue;
+      (along > 0.0 ? ahead : behind) = std::min(along > 0.0 ? ahead : behind, std::fabs(along));
+    }
+    const double reach_mm =
+        std::min({std::max(ahead, behind), 2.0 * std::min(ahead, behind), 0.1 * part.radius_mm});
+    lengths.push_back(0.55 * reach_mm);
+  }
+  return lengths;
+}
+
+class Artist {
+ public:
+  Artist(Canvas& canvas, const Sheet& sheet, const model::Template& part)
+      : canvas_(canvas), sheet_(sheet), part_(part), halves_mm_(dash_half_lengths_mm(part)) {
+    cairo_set_line_cap(canvas_.get(), CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(canvas_.get(), CAIRO_LINE_JOIN_ROUND);
+  }
+
+  void contour(const Pose& work_T_object) {
+    const struct {
+      Colour colour;
+      double alpha, width;
+    } passes[] = {{kDark, 0.75, 5.0}, {kContour, 1.0, 2.4}};
+    for (const auto& pass : passes) {
+      canvas_.colour(pass.colour, pass.alpha);
+      cairo_set_line_width(canvas_.get(), pass.width);
+      for (int i = 0; i < part_.contour_count; ++i) dash(work_T_object, i);
+      cairo_stroke(canvas_.get());  // one stroke, so that overlaps do not darken
+    }
+  }
+
+  void surface(const Pose& work_T_object) {
+    canvas_.colour(kSurface, 0.85);
+    for (const model::SurfacePoint& p : part_.surface_points()) {
+      const Place at = sheet_.place(work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm});
+      disc(at, 1.7);
+    }
+    for (int i = 0; i < part_.anchor_count; ++i) anchor(work_T_object, part_.anchors[i]);
+  }
+
+  void axes(const Pose& work_T_object) {
+    const double length_mm =
+        std::clamp(0.45 * part_.radius_mm, 24.0 / sheet_.px_per_mm(), 90.0 / sheet_.px_per_mm());
+    const Place origin = sheet_.place(work_T_object.position_mm);
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vec3 tip = work_T_object.position_mm + length_mm * work_T_object.rotation.column(axis);
+      arrow(origin, sheet_.place(tip), kAxes[axis]);
+    }
+    // z points at the viewer: a ring, and a line as long as it leans.
+    const Vec3 z_tip = work_T_object.position_mm + length_mm * work_T_object.rotation.column(2);
+    const Place lean = sheet_.place(z_tip);
+    if (std::hypot(lean.x - origin.x, lean.y - origin.y) > 6.0) arrow(origin, lean, kAxes[2]);
+    canvas_.colour(kDark, 0.8);
+    disc(origin, 6.5);
+    canvas_.colour(kAxes[2]);
+    disc(origin, 5.0);
+    canvas_.colour(kInk);
+    disc(origin, 1.8);
+  }
+
+  void label(const Pose& work_T_object, const std::string& text) {
+    constexpr double kSize_px = 15.0;
+    canvas_.font(kSize_px, true);
+    const double width = canvas_.text_width(text) + 14.0;
+    const Place at = sheet_.place(work_T_object.position_mm);
+    const double x = std::clamp(at.x + 11.0, sheet_.left + 2.0,
+                                std::max(sheet_.left + 2.0, sheet_.left + sheet_.width - width));
+    const double y = std::clamp(at.y + 11.0, sheet_.top + 2.0,
+                                std::max(sheet_.top + 2.0, sheet_.top + sheet_.height - 24.0));
+    canvas_.colour(kDark, 0.78);
+    canvas_.rounded_box(x, y, width, 23.0, 5.0);
+    canvas_.colour(kInk);
+    canvas_.text(x + 7.0, y + 16.8, text);
+  }
+
+ private:
+  void dash(const Pose& work_T_object, int i) {
+    const model::ContourPoint& p = part_.contour[i];
+    const double half_mm = halves_mm_[i];
+    const Vec3 middle{p.x_mm, p.y_mm, p.z_mm};
+    const Vec3 along{-half_mm * static_cast<double>(p.ny), half_mm * static_cast<double>(p.nx),
+                     0.0};
+    const Place a = sheet_.place(work_T_object * (middle - along));
+    const Place b = sheet_.place(work_T_object * (middle + along));
+    cairo_move_to(canvas_.get(), a.x, a.y);
+    cairo_line_to(canvas_.get(), b.x, b.y);
+  }
+
+  void anchor(const Pose& work_T_object, const model::Anchor& a) {
+    const Place at = sheet_.place(work_T_object * Vec3{a.x_mm, a.y_mm, 0.0});
+    canvas_.colour(kAnchor);
+    cairo_set_line_width(canvas_.get(), 1.8);
+    cairo_new_sub_path(canvas_.get());
+    cairo_arc(canvas_.get(), at.x, at.y,
+              std::max(3.0, static_cast<double>(a.clearance_mm) * sheet_.px_per_mm()), 0.0,
+              2.0 * std::numbers::pi);
+    cairo_stroke(canvas_.get());
+    canvas_.line(at.x - 6.0, at.y, at.x + 6.0, at.y);
+    canvas_.line(at.x, at.y - 6.0, at.x, at.y + 6.0);
+  }
+
+  void disc(const Place& at, double radius_px) {
+    cairo_new_sub_path(canvas_.get());
+    cairo_arc(canvas_.get(), at.x, at.y, radius_px, 0.0, 2.0 * std::numbers::pi);
+    cairo_fill(canvas_.get());
+  }
+
+  void arrow(const Place& from, const Place& to, const Colour& colour) {
+    const double length = std::hypot(to.x - from.x, to.y - from.y);
+    if (length < 1.0) return;
+    const Place along{(to.x - from.x) / length, (to.y - from.y) / length};
+    const double head = std::min(12.0, 0.6 * length);
+    const Place neck{to.x - head * along.x, to.y - head * along.y};
+    const struct {
+      Colour colour;
+      double alpha, width, grow;
+    } passes[] = {{kDark, 0.8, 6.0, 2.0}, {colour, 1.0, 3.2, 0.0}};
+    for (const auto& pass : passes) {
+      canvas_.colour(pass.colour, pass.alpha);
+      cairo_set_line_width(canvas_.get(), pass.width);
+      canvas_.line(from.x, from.y, neck.x, neck.y);
+      const double half = 0.42 * head + pass.grow;
+      cairo_move_to(canvas_.get(), to.x + pass.grow * along.x, to.y + pass.grow * along.y);
+      cairo_line_to(canvas_.get(), neck.x - half * along.y - pass.grow * along.x,
+                    neck.y + half * along.x - pass.grow * along.y);
+      cairo_line_to(canvas_.get(), neck.x + half * along.y - pass.grow * along.x,
+                    neck.y - half * along.x - pass.grow * along.y);
+      cairo_close_path(canvas_.get());
+      cairo_fill(canvas_.get());
+    }
+  }
+
+  Canvas& canvas_;
+  const Sheet& sheet_;
+  const model::Template& part_;
+  std::vector<double> halves_mm_;
+};
+
+/// The largest of 1, 2, 5 times a power of ten that is not above `length_mm`.
+double round_length_mm(double length_mm) {
+  const double power = std::pow(10.0, std::floor(std::log10(length_mm)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * power <= length_mm) return step * power;
+  }
+  return power;
+}
+
+void draw_scale_bar(Canvas& canvas, double px_per_mm, double x, double y) {
+  const double length_mm = round_length_mm(150.0 / px_per_mm);
+  const double length_px = length_mm * px_per_mm;
+  constexpr int kParts = 4;
+  for (int i = 0; i < kParts; ++i) {
+    canvas.colour(i % 2 == 0 ? kInk : kFaint);
+    canvas.box(x + i * length_px / kParts, y, length_px / kParts, 6.0);
+  }
+  canvas.font(13.0);
+  canvas.colour(kInk);
+  canvas.text(x, y + 23.0, formatted("%g mm", length_mm));
+}
+
+double draw_heights(Canvas& canvas, const Relief& relief, double right, double y) {
+  constexpr int kWidth = 150;
+  for (int i = 0; i < kWidth; ++i) {
+    canvas.colour(tint(i / (kWidth - 1.0)));
+    canvas.box(right - kWidth + i, y, 1.0, 8.0);
+  }
+  canvas.font(13.0);
+  canvas.colour(kInk);
+  const std::string low = formatted("%.4g", relief.low_mm);
+  const std::string high = formatted("%.4g mm", relief.high_mm);
+  canvas.text(right - kWidth, y + 23.0, low);
+  canvas.text(right - canvas.text_width(high), y + 23.0, high);
+  return right - kWidth;
+}
+
+// x, y, z as letters in their colours.
+double draw_key(Canvas& canvas, double right, double y) {
+  canvas.font(13.0, true);
+  double x = right - 62.0;
+  for (int i = 0; i < 3; ++i) {
+    canvas.colour(kAxes[i]);
+    canvas.box(x + i * 22.0, y - 3.5, 8.0, 3.0);
+    canvas.text(x + i * 22.0, y + 14.0, std::string(1, "xyz"[i]));
+  }
+  return x;
+}
+
+std::string shortened(const Canvas& canvas, std::string text, double width_px) {
+  if (canvas.text_width(text) <= width_px) return text;
+  // Whole UTF-8 characters go, from the end.
+  while (!text.empty() && canvas.text_width(text + "...") > width_px) {
+    do {
+      const auto last = static_cast<unsigned char>(text.back());
+      text.pop_back();
+      if ((last & 0xC0U) != 0x80U) break;
+    } while (!text.empty());
+  }
+  return text + "...";
+}
+
+void draw_footer(Canvas& canvas, const Sheet& sheet, const Relief& relief, const std::string& title,
+                 const LoadedScan& loaded) {
+  const double top = canvas.height_px() - kFooter_px;
+  canvas.colour(kPaper);
+  canvas.box(0.0, top, canvas.width_px(), kFooter_px);
+  double left = 16.0;
+  double right = canvas.width_px() - 16.0;
+  if (!relief.xrgb.empty()) {
+    draw_scale_bar(canvas, sheet.px_per_mm(), left, top + 16.0);
+    left += 190.0;
+    right = draw_heights(canvas, relief, right, top + 14.0) - 20.0;
+    right = draw_key(canvas, right, top + 23.0) - 16.0;
+  }
+  canvas.font(15.0, true);
+  canvas.colour(kInk);
+  canvas.text(left, top + 23.0, shortened(canvas, title, right - left));
+  canvas.font(12.0);
+  canvas.colour(kFaint);
+  const std::string detail =
+      formatted("frame %s, seen from above (%s by %s)", loaded.frame_name(),
+                port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str());
+  canvas.text(left, top + 41.0, shortened(canvas, detail, right - left));
+}
+
+Sheet lay_out(const Relief& relief) {
+  Sheet sheet;
+  sheet.grid = relief.grid;
+  const int longer_px = std::max(relief.grid.width_px, relief.grid.height_px);
+  if (longer_px <= 0) return sheet;
+  sheet.scale = static_cast<double>(kSide_px) / longer_px;
+  sheet.width = sheet.scale * relief.grid.width_px;
+  sheet.height = sheet.scale * relief.grid.height_px;
+  return sheet;
+}
+
+}  // namespace
+
+std::vector<std::byte> draw_overlay(const Overlay& overlay, const model::Template& part,
+                                    const LoadedScan& loaded) {
+  const Relief relief = make_relief(loaded, kSide_px);
+  Sheet sheet = lay_out(relief);
+  const int width_px = std::max(kWidthMin_px, static_cast<int>(std::ceil(sheet.width)));
+  const int map_px = std::max(kHeightMin_px, static_cast<int>(std::ceil(sheet.height)));
+  sheet.left = 0.5 * (width_px - sheet.width);
+  sheet.top = 0.5 * (map_px - sheet.height);
+
+  Canvas canvas(width_px, map_px + static_cast<int>(kFooter_px));
+  canvas.colour(kMissing);
+  canvas.box(0.0, 0.0, width_px, map_px);
+  if (relief.xrgb.empty()) {
+    canvas.font(18.0);
+    canvas.colour(kFaint);
+    canvas.text(24.0, 40.0, "every point is missing");
+  } else {
+    canvas.picture(relief.xrgb, relief.grid.width_px, relief.grid.height_px, sheet.left, sheet.top,
+                   sheet.width, sheet.height);
+    Artist artist(canvas, sheet, part);
+    const Pose work_T_face = loaded.frames.work_T_face();
+    for (const Mark& mark : overlay.marks) {
+      if (overlay.shows_template) artist.surface(work_T_face * mark.face_T_object);
+      artist.contour(work_T_face * mark.face_T_object);
+    }
+    for (const Mark& mark : overlay.marks) artist.axes(work_T_face * mark.face_T_object);
+    for (const Mark& mark : overlay.marks)
+      artist.label(work_T_face * mark.face_T_object, port::printable(mark.label, kTitleBytesMax));
+  }
+  // cairo refuses text that is no UTF-8.
+  draw_footer(canvas, sheet, relief, port::printable(overlay.title, kTitleBytesMax), loaded);
+  return canvas.png();
+}
+
+}  // namespace flatpose::tool
