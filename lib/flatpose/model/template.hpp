@@ -27,6 +27,9 @@ struct ContourPoint {
   float nx = 1.0F;    ///< Unit direction in the object's xy plane in which the height falls.
   float ny = 0.0F;
   float step_mm = 0.0F;  ///< How far it fell in the teach scan.
+  /// Scatter of the teach scan's own lines about it; negative where they could not measure it: such
+  /// a point serves the search and the verification, not the last step.
+  float spread_mm = -1.0F;
 };
 
 struct SurfacePoint {

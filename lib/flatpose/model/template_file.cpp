@@ -118,7 +118,8 @@ void visit(Stream& stream, T& part) noexcept {
   if (stream.failed() || !counts_are_valid(part)) return;
   for (int i = 0; i < part.contour_count; ++i) {
     auto& p = part.contour[i];
-    for (auto* value : {&p.x_mm, &p.y_mm, &p.z_mm, &p.nx, &p.ny, &p.step_mm}) stream.field(*value);
+    for (auto* value : {&p.x_mm, &p.y_mm, &p.z_mm, &p.nx, &p.ny, &p.step_mm, &p.spread_mm})
+      stream.field(*value);
   }
   for (int i = 0; i < part.surface_count; ++i) {
     auto& p = part.surface[i];
@@ -139,7 +140,7 @@ constexpr double kCoordinateMax_mm = 1e6;
 bool clouds_are_valid(const Template& part) noexcept {
   constexpr double kUnitSlack = 1e-3;
   for (const ContourPoint& p : part.contour_points()) {
-    for (const float v : {p.x_mm, p.y_mm, p.z_mm, p.step_mm}) {
+    for (const float v : {p.x_mm, p.y_mm, p.z_mm, p.step_mm, p.spread_mm}) {
       if (!is_finite_within(v, -kCoordinateMax_mm, kCoordinateMax_mm)) return false;
     }
     const double length2 = static_cast<double>(p.nx) * p.nx + static_cast<double>(p.ny) * p.ny;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kPointCountMin = 12;
 constexpr int kCrossingCountMin = 6;
+constexpr double kSigmaMin = 0.02;  // of the pitch: quantised scans may fit exactly
 constexpr int kPatchRadiusMax_px = 3;
 
 // The raw points of the footprint: a square patch around each surface point, as large as their
@@ -20,45 +21,124 @@ int patch_radius_px(const model::Template& part) noexcept {
   return std::clamp(static_cast<int>(radius_px), 0, kPatchRadiusMax_px);
 }
 
-// Parameters: shift along z, turns about x and y. A point of the part at (x, y) then stands, in the
-// moved frame, at
-//   z - tz - (rx y - ry x),
-// so the residual against the template's height there is linear.
-class SurfaceProblem {
+struct Sigmas {
+  double surface_mm = 0.1;
+  double contour_mm = 0.1;
+};
+
+// Sums that tell how well each kind of residual was met.
+struct Fit {
+  double square_sum = 0.0;
+  double weight_sum = 0.0;
+  [[nodiscard]] double rms() const noexcept {
+    return weight_sum > 0.0 ? std::sqrt(square_sum / weight_sum) : 0.0;
+  }
+};
+
+// All six parameters h = (turn, shift) in the object's frame. A measured point q of the part
+// stands, in the moved frame, at q - h_r x q - h_t, so with a residual whose gradient over q is g
+//   (1)  r(h) = r - g . (h_r x q + h_t) = r - (q x g) . h_r - g . h_t,
+// which is linear. Contour: g is its outward normal. Surface: the residual follows the template's
+// slope, but g is z alone: slopes on a flat part are rims and flanks, which sensors distort, so
+// that x, y and phi are left to the contour.
+class PolishProblem {
  public:
-  SurfaceProblem(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
-                 double tolerance_mm) noexcept
+  PolishProblem(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
+                const PolishConfig& config, double contour_reach_mm, const Sigmas& sigmas,
+                std::span<const Crossing> crossings) noexcept
       : part_(part),
         raw_(raw),
         work_T_object_(work_T_object),
         object_T_scan_(work_T_object.inverse() * raw.work_T_scan),
         radius_px_(patch_radius_px(part)),
-        loss_(RobustLoss::tukey(tolerance_mm)) {}
+        surface_loss_(RobustLoss::tukey(config.height_tolerance_mm)),
+        contour_loss_(RobustLoss::tukey(contour_reach_mm)),
+        surface_weight_(1.0 / (sigmas.surface_mm * sigmas.surface_mm)),
+        contour_variance_(sigmas.contour_mm * sigmas.contour_mm),
+        crossings_(crossings) {}
 
-  bool evaluate(const Vector<3>& x, NormalEquations<3>* equations) const noexcept {
-    for (const model::SurfacePoint& p : part_.surface_points()) {
-      const Pixel centre = raw_.pixel_under(work_T_object_ * Vec3{p.x_mm, p.y_mm, p.z_mm});
-      if (!centre.is_none()) add_patch(p, centre, x, equations);
-    }
+  bool evaluate(const Vector<6>& h, NormalEquations<6>* equations) const noexcept {
+    visit_surface([&](double r, const Vec3& q, const Vec3& g) {
+      add(r, q, g, h, surface_weight_, surface_loss_, equations);
+    });
+    visit_contour([&](double r, const Vec3& q, const Vec3& g, double weight) {
+      add(r, q, g, h, weight, contour_loss_, equations);
+    });
+    if (part_.symmetry.order == model::kFullSymmetry) hold_turn(h, equations);
     return true;
   }
 
+  [[nodiscard]] Fit surface_fit(const Vector<6>& h) const noexcept {
+    Fit fit;
+    visit_surface([&](double r, const Vec3& q, const Vec3& g) {
+      tally(moved(r, q, g, h), surface_loss_, &fit);
+    });
+    return fit;
+  }
+  [[nodiscard]] Fit contour_fit(const Vector<6>& h) const noexcept {
+    Fit fit;
+    visit_contour([&](double r, const Vec3& q, const Vec3& g, double) {
+      tally(moved(r, q, g, h), contour_loss_, &fit);
+    });
+    return fit;
+  }
+
  private:
-  void add_patch(const model::SurfacePoint& p, Pixel centre, const Vector<3>& x,
-                 NormalEquations<3>* equations) const noexcept {
-    const double nz2 = 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny;
-    const double nz = std::sqrt(std::max(0.25, nz2));
-    for (int row = centre.row - radius_px_; row <= centre.row + radius_px_; ++row) {
-      for (int column = centre.column - radius_px_; column <= centre.column + radius_px_;
-           ++column) {
-        if (!raw_.scan.contains(column, row)) continue;
-        const Vec3 q_scan_mm = raw_.scan(column, row);
-        if (!is_valid(q_scan_mm)) continue;
-        const Vec3 q = object_T_scan_ * q_scan_mm;
-        const double expected_mm = p.z_mm - (p.nx * (q.x - p.x_mm) + p.ny * (q.y - p.y_mm)) / nz;
-        const double residual_mm = q.z - x[0] - (x[1] * q.y - x[2] * q.x) - expected_mm;
-        equations->add(residual_mm, Vector<3>(-1.0, -q.y, q.x), 1.0, loss_);
+  static double moved(double r, const Vec3& q, const Vec3& g, const Vector<6>& h) noexcept {  // (1)
+    return r - dot(cross(q, g), {h[0], h[1], h[2]}) - dot(g, {h[3], h[4], h[5]});
+  }
+
+  static void add(double r, const Vec3& q, const Vec3& g, const Vector<6>& h, double weight,
+                  const RobustLoss& loss, NormalEquations<6>* equations) noexcept {
+    const Vec3 turn = cross(q, g);
+    Vector<6> row;
+    row << -turn.x, -turn.y, -turn.z, -g.x, -g.y, -g.z;
+    equations->add(moved(r, q, g, h), row, weight, loss);
+  }
+
+  static void tally(double r, const RobustLoss& loss, Fit* fit) noexcept {
+    const double weight = loss(r).weight;
+    fit->square_sum += weight * r * r;
+    fit->weight_sum += weight;
+  }
+
+  // A turn that changes nothing is not fitted to the noise: about the axis of symmetry nothing may
+  // turn.
+  void hold_turn(const Vector<6>& h, NormalEquations<6>* equations) const noexcept {
+    constexpr double kFixed = 1e12;
+    equations->add_prior(2, h[2], kFixed);
+  }
+
+  template <class Visit>
+  void visit_surface(Visit&& visit) const noexcept {
+    for (const model::SurfacePoint& p : part_.surface_points()) {
+      const Pixel centre = raw_.pixel_under(work_T_object_ * Vec3{p.x_mm, p.y_mm, p.z_mm});
+      if (centre.is_none()) continue;
+      const double nz2 = 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny;
+      const double nz = std::sqrt(std::max(0.25, nz2));
+      const Vec3 slope{p.nx / nz, p.ny / nz, 1.0};
+      for (int row = centre.row - radius_px_; row <= centre.row + radius_px_; ++row) {
+        for (int column = centre.column - radius_px_; column <= centre.column + radius_px_;
+             ++column) {
+          if (!raw_.scan.contains(column, row)) continue;
+          const Vec3 q_scan_mm = raw_.scan(column, row);
+          if (!is_valid(q_scan_mm)) continue;
+          const Vec3 q = object_T_scan_ * q_scan_mm;
+          visit(dot(slope, q - Vec3{p.x_mm, p.y_mm, p.z_mm}), q, Vec3{0, 0, 1});
+        }
       }
+    }
+  }
+
+  template <class Visit>
+  void visit_contour(Visit&& visit) const noexcept {
+    for (int i = 0; i < part_.contour_count; ++i) {
+      if (!crossings_[i].found) continue;
+      const model::ContourPoint& p = part_.contour[i];
+      const double spread2 = static_cast<double>(p.spread_mm) * p.spread_mm +
+                             0.25 * crossings_[i].width_mm * crossings_[i].width_mm;
+      visit(crossings_[i].offset_mm, Vec3{p.x_mm, p.y_mm, p.z_mm}, Vec3{p.nx, p.ny, 0.0},
+            1.0 / (contour_variance_ + spread2));
     }
   }
 
@@ -67,75 +147,20 @@ class SurfaceProblem {
   const Pose& work_T_object_;
   Pose object_T_scan_;
   int radius_px_;
-  RobustLoss loss_;
-};
-
-// Parameters: shifts along x and y, turn about z at the centre of symmetry. A measured contour
-// point moves by minus that, so offset - n . (t + turn x q) is its residual.
-class ContourProblem {
- public:
-  ContourProblem(const model::Template& part, std::span<const Crossing> crossings,
-                 double reach_mm) noexcept
-      : part_(part), crossings_(crossings), loss_(RobustLoss::tukey(reach_mm)) {}
-
-  bool evaluate(const Vector<3>& x, NormalEquations<3>* equations) const noexcept {
-    for (int i = 0; i < part_.contour_count; ++i) {
-      if (!crossings_[i].found) continue;
-      const model::ContourPoint& p = part_.contour[i];
-      const double lever_mm = (p.x_mm - part_.symmetry.center_x_mm) * p.ny -
-                              (p.y_mm - part_.symmetry.center_y_mm) * p.nx;
-      const double residual_mm =
-          crossings_[i].offset_mm - (x[0] * p.nx + x[1] * p.ny + x[2] * lever_mm);
-      equations->add(residual_mm, Vector<3>(-p.nx, -p.ny, -lever_mm), 1.0, loss_);
-    }
-    // A turn that changes nothing is not fitted to the noise.
-    constexpr double kFixed = 1e9;
-    if (part_.symmetry.order == model::kFullSymmetry) equations->add_prior(2, x[2], kFixed);
-    return true;
-  }
-
- private:
-  const model::Template& part_;
+  RobustLoss surface_loss_;
+  RobustLoss contour_loss_;
+  double surface_weight_;
+  double contour_variance_;
   std::span<const Crossing> crossings_;
-  RobustLoss loss_;
 };
-
-// A turn by a small angle about the centre of symmetry as a step in the object's frame.
-Vector<6> contour_step(const model::Symmetry& symmetry, const Vector<3>& x) noexcept {
-  Vector<6> step = Vector<6>::Zero();
-  step[2] = x[2];
-  step[3] = x[0] + x[2] * symmetry.center_y_mm;
-  step[4] = x[1] - x[2] * symmetry.center_x_mm;
-  return step;
-}
-
-Vector<6> surface_step(const Vector<3>& x) noexcept {
-  Vector<6> step = Vector<6>::Zero();
-  step[0] = x[1];
-  step[1] = x[2];
-  step[5] = x[0];
-  return step;
-}
-
-double variance_of(const Minimum<3, Vector<3>>& minimum) noexcept {
-  const double freedom = std::max(1.0, minimum.weight_sum - 3.0);
-  return minimum.square_sum / freedom;
-}
-
-double rms_of(const Minimum<3, Vector<3>>& minimum) noexcept {
-  return minimum.weight_sum > 0.0 ? std::sqrt(minimum.square_sum / minimum.weight_sum) : 0.0;
-}
-
-void add_covariance(const Matrix<3>& c, const std::array<int, 3>& to, Matrix<6>* out) noexcept {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) (*out)(to[i], to[j]) = c(i, j);
-}
 
 int measure(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
             const PolishConfig& config, std::span<Crossing> crossings) noexcept {
   const RawContourConfig contour_config{config.search_mm, config.height_tolerance_mm};
   int found_count = 0;
   for (int i = 0; i < part.contour_count; ++i) {
+    crossings[i] = {};
+    if (part.contour[i].spread_mm < 0.0F) continue;
     crossings[i] = measure_crossing(raw, work_T_object, part.contour[i], contour_config);
     if (crossings[i].found) ++found_count;
   }
@@ -162,31 +187,24 @@ Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
     return Status::kShapeMismatch;
   PolishResult out;
   out.work_T_object = work_T_object;
-  const Vector<3> zero = Vector<3>::Zero();
+  Sigmas sigmas{part.noise_mm, 0.5 * part.pitch_mm};
   for (int round = 0; round < config.round_count; ++round) {
-    const SurfaceProblem surface(part, raw, out.work_T_object, config.height_tolerance_mm);
-    const auto flat = minimize<3>(surface, zero, solver_config());
-    if (flat.weight_sum < kPointCountMin) return Status::kTooFewPoints;
-    out.work_T_object = moved(out.work_T_object, surface_step(flat.x));
-
     out.crossing_count = measure(part, raw, out.work_T_object, config, crossings);
-    if (out.crossing_count < kCrossingCountMin) return Status::kTooFewPoints;
     // The reach shrinks with the rounds: wide to come home, narrow to shut out what is not ours.
     const double reach_mm = std::max(config.search_mm / (round + 1), 1.5 * part.pitch_mm);
-    const ContourProblem contour(part, crossings, reach_mm);
-    const auto round_trip = minimize<3>(contour, zero, solver_config());
-    if (round_trip.weight_sum < kCrossingCountMin) return Status::kTooFewPoints;
-    out.work_T_object = moved(out.work_T_object, contour_step(part.symmetry, round_trip.x));
-
-    out.point_count = flat.residual_count;
-    out.surface_rms_mm = rms_of(flat);
-    out.edge_rms_mm = rms_of(round_trip);
-    if (const auto c = covariance<3>(flat.hessian, variance_of(flat))) {
-      add_covariance(c->matrix, {5, 0, 1}, &out.covariance);
-    }
-    if (const auto c = covariance<3>(round_trip.hessian, variance_of(round_trip))) {
-      add_covariance(c->matrix, {3, 4, 2}, &out.covariance);
-    }
+    const PolishProblem problem(part, raw, out.work_T_object, config, reach_mm, sigmas, crossings);
+    const auto minimum = minimize<6>(problem, Vector<6>(Vector<6>::Zero()), solver_config());
+    const Fit surface = problem.surface_fit(minimum.x);
+    const Fit contour = problem.contour_fit(minimum.x);
+    if (surface.weight_sum < kPointCountMin || contour.weight_sum < kCrossingCountMin)
+      return Status::kTooFewPoints;
+    out.work_T_object = moved(out.work_T_object, minimum.x);
+    out.surface_rms_mm = surface.rms();
+    out.edge_rms_mm = contour.rms();
+    // What was met so well is weighed so: the next round's Hessian is then one over the covariance.
+    sigmas.surface_mm = std::max(surface.rms(), kSigmaMin * part.pitch_mm);
+    sigmas.contour_mm = std::max(contour.rms(), kSigmaMin * part.pitch_mm);
+    if (const auto c = covariance<6>(minimum.hessian)) out.covariance = c->matrix;
   }
   out.turn_is_free = part.symmetry.order == model::kFullSymmetry;
   return out;

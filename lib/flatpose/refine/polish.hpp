@@ -1,7 +1,8 @@
 #pragma once
-// The last step, on the scan's own points instead of the resampled map: z and tilt from every raw
-// point inside the footprint, x, y and phi from where scan lines leave the surface. Both are small
-// robust least squares, solved in turn.
+// The last step, on the scan's own points instead of the resampled map: every raw point inside the
+// footprint and every place where a scan line leaves the surface, in one robust least squares over
+// all six parameters. On a flat part the first tell z and tilt and the second x, y and phi; slopes
+// and domes on the part help to hold x and y too.
 
 #include <span>
 
@@ -27,7 +28,6 @@ struct PolishResult {
   double edge_rms_mm = 0.0;
   double surface_rms_mm = 0.0;
   int crossing_count = 0;
-  int point_count = 0;
 };
 
 /// Fits the pose to the raw points.  Memory: `crossings` holds one entry a contour point of the

@@ -7,6 +7,11 @@ namespace flatpose::refine {
 namespace {
 
 constexpr int kWalkLengthMax = 64;
+// Laser triangulation overshoots at an edge over a few points; what stays above for longer lies on
+// the part.
+constexpr int kSpikeLengthMax = 6;
+// A slope goes on from point to point by at least this share of the tolerance.
+constexpr double kRiseShare = 0.3;
 
 enum class Standing { kOn, kBelow, kAbove, kMissing };
 
@@ -84,6 +89,24 @@ bool find_start(const RawScan& raw, const Pose& work_T_object, const model::Cont
   return false;
 }
 
+// The end of a slope: from a pixel on, as long as each next point lies further along in height
+// (rise > 0 up, < 0 down). A shadow cuts the slope off: nothing is known of the rest.
+Vec3 end_of_slope(const Line& line, Pixel from, const Vec3& from_mm, int dcolumn, int drow,
+                  double rise_mm) noexcept {
+  constexpr int kSlopeLengthMax = 24;
+  Vec3 end_mm = from_mm;
+  Pixel pixel = from;
+  for (int walked = 0; walked < kSlopeLengthMax; ++walked) {
+    pixel = {pixel.column + dcolumn, pixel.row + drow};
+    Vec3 p_mm;
+    if (line.at(pixel, &p_mm) == Standing::kMissing) return end_mm;
+    const bool goes_on = rise_mm > 0.0 ? p_mm.z > end_mm.z + rise_mm : p_mm.z < end_mm.z + rise_mm;
+    if (!goes_on) return end_mm;
+    end_mm = p_mm;
+  }
+  return end_mm;
+}
+
 }  // namespace
 
 Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
@@ -103,30 +126,37 @@ Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
   const auto offset_of = [&c](double x_mm, double y_mm) {
     return (x_mm - c.x_mm) * c.nx + (y_mm - c.y_mm) * c.ny;
   };
+  int above_count = 0;
   for (int walked = 0; walked < kWalkLengthMax; ++walked) {
     const Pixel next{pixel.column + step.dcolumn, pixel.row + step.drow};
-    const Pixel after{next.column + step.dcolumn, next.row + step.drow};
     Vec3 next_mm;
-    Vec3 after_mm;
     const Standing at_next = line.at(next, &next_mm);
-    if (at_next == Standing::kOn) {
+    above_count = at_next == Standing::kAbove ? above_count + 1 : 0;
+    if (above_count > kSpikeLengthMax) return {};  // hidden under something, not ended
+    if (at_next == Standing::kOn || at_next == Standing::kAbove) {
       pixel = next;
       last_mm = next_mm;
       if (offset_of(last_mm.x, last_mm.y) > config.search_mm) return {};
       continue;
     }
-    const Standing at_after = line.at(after, &after_mm);
-    if (at_after == Standing::kOn) {  // one lost or stray point does not end a surface
+    const Pixel after{next.column + step.dcolumn, next.row + step.drow};
+    if (line.at(after, &next_mm) == Standing::kOn) {  // one lost or stray point ends no surface
       pixel = after;
-      last_mm = after_mm;
+      last_mm = next_mm;
       continue;
     }
-    if (at_next == Standing::kAbove || at_after == Standing::kAbove)
-      return {};                                               // hidden, not ended
     if (!raw.scan.contains(next.column, next.row)) return {};  // the field ends here
     const double offset_mm = offset_of(last_mm.x + 0.5 * step.dx_mm, last_mm.y + 0.5 * step.dy_mm);
     if (!(std::fabs(offset_mm) <= config.search_mm)) return {};
-    return {true, offset_mm};
+    // A single step of the scan is as sharp as can be seen; what the slope goes on for, up and
+    // down, is its width.
+    const double rise_mm = kRiseShare * config.tolerance_mm;
+    const Vec3 top_mm = end_of_slope(line, pixel, last_mm, -step.dcolumn, -step.drow, rise_mm);
+    const Vec3 foot_mm = end_of_slope(line, pixel, last_mm, step.dcolumn, step.drow, -rise_mm);
+    const double step_mm = step.dx_mm * c.nx + step.dy_mm * c.ny;
+    const double width_mm =
+        offset_of(foot_mm.x, foot_mm.y) - offset_of(top_mm.x, top_mm.y) - step_mm;
+    return {true, offset_mm, std::max(0.0, width_mm)};
   }
   return {};
 }

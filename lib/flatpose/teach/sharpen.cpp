@@ -1,5 +1,6 @@
 #include "flatpose/teach/sharpen.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,26 +20,43 @@ class Parabola {
     const std::array<double, 5> powers{1.0, s, s2, s2 * s, s2 * s2};
     for (int i = 0; i < 5; ++i) power_sum_[i] += powers[i];
     for (int i = 0; i < 3; ++i) offset_sum_[i] += powers[i] * offset;
+    square_sum_ += offset * offset;
     ++count_;
   }
   [[nodiscard]] int count() const noexcept { return count_; }
 
-  [[nodiscard]] double at_zero() const noexcept {
+  struct Fit {
+    double at_zero = 0.0;
+    double rms = 0.0;
+  };
+  [[nodiscard]] Fit fit() const noexcept {
     constexpr int kCountForCurve = 6;
     const auto& m = power_sum_;
     const auto& o = offset_sum_;
-    // Cramer's rule on the 3 x 3 normal equations of (1).
+    // Cramer's rule on the 3 x 3 normal equations of (1); their matrix is symmetric.
     const double c00 = m[2] * m[4] - m[3] * m[3];
-    const double c01 = m[1] * m[4] - m[2] * m[3];
+    const double c01 = m[2] * m[3] - m[1] * m[4];
     const double c02 = m[1] * m[3] - m[2] * m[2];
-    const double determinant = m[0] * c00 - m[1] * c01 + m[2] * c02;
-    if (count_ < kCountForCurve || !(determinant > 1e-6 * m[0] * m[2] * m[4])) return o[0] / count_;
-    return (o[0] * c00 - o[1] * c01 + o[2] * c02) / determinant;
+    const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
+    if (count_ < kCountForCurve || !(determinant > 1e-6 * m[0] * m[2] * m[4])) {
+      const double mean = o[0] / count_;
+      return {mean, std::sqrt(std::max(0.0, square_sum_ / count_ - mean * mean))};
+    }
+    const double c11 = m[0] * m[4] - m[2] * m[2];
+    const double c12 = m[1] * m[2] - m[0] * m[3];
+    const double c22 = m[0] * m[2] - m[1] * m[1];
+    const double a = (o[0] * c00 + o[1] * c01 + o[2] * c02) / determinant;
+    const double b = (o[0] * c01 + o[1] * c11 + o[2] * c12) / determinant;
+    const double c = (o[0] * c02 + o[1] * c12 + o[2] * c22) / determinant;
+    // Of a least squares fit: the rest is sum o^2 less what the parameters explain.
+    const double rest = square_sum_ - (a * o[0] + b * o[1] + c * o[2]);
+    return {a, std::sqrt(std::max(0.0, rest) / count_)};
   }
 
  private:
   std::array<double, 5> power_sum_{};
   std::array<double, 3> offset_sum_{};
+  double square_sum_ = 0.0;
   int count_ = 0;
 };
 
@@ -49,6 +67,7 @@ void ContourMean::add(const model::Template& part, const refine::RawScan& raw,
   for (int i = 0; i < part.contour_count; ++i) {
     const model::ContourPoint& p = part.contour[i];
     Parabola parabola;
+    double width_sum_mm = 0.0;
     for (int k = -kReachInPitches; k <= kReachInPitches; ++k) {
       model::ContourPoint beside = p;
       const double along_mm = k * part.pitch_mm;
@@ -56,13 +75,17 @@ void ContourMean::add(const model::Template& part, const refine::RawScan& raw,
       beside.y_mm = static_cast<float>(p.y_mm + along_mm * p.nx);
       const refine::Crossing crossing =
           refine::measure_crossing(raw, work_T_object, beside, config);
-      if (crossing.found) parabola.add(k, crossing.offset_mm);
+      if (!crossing.found) continue;
+      parabola.add(k, crossing.offset_mm);
+      width_sum_mm += crossing.width_mm;
     }
     // Near a corner or beside something else few lines agree: the edge's own place is the better
     // guess.
     constexpr int kLineCountMin = 3;
     if (parabola.count() < kLineCountMin) continue;
-    sum_mm_[i] += parabola.at_zero();
+    const Parabola::Fit fit = parabola.fit();
+    sum_mm_[i] += fit.at_zero;
+    spread_sum_mm_[i] += fit.rms + 0.5 * width_sum_mm / parabola.count();
     ++count_[i];
   }
 }
@@ -76,6 +99,7 @@ double ContourMean::apply(model::Template& part) noexcept {
     model::ContourPoint& p = part.contour[i];
     p.x_mm = static_cast<float>(p.x_mm + shift_mm * p.nx);
     p.y_mm = static_cast<float>(p.y_mm + shift_mm * p.ny);
+    p.spread_mm = static_cast<float>(spread_sum_mm_[i] / count_[i]);
     square_sum += shift_mm * shift_mm;
     ++measured_count;
   }

@@ -22,6 +22,7 @@ class ContourMean {
 
  private:
   std::array<double, model::kContourPointCountMax> sum_mm_{};
+  std::array<double, model::kContourPointCountMax> spread_sum_mm_{};
   std::array<int, model::kContourPointCountMax> count_{};
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kFitRadius_px = 2;
 constexpr int kSampleCountMin = 8;
+constexpr double kParallel = 0.08;  // 4.6 degrees
 
 std::size_t cell_count_of(const rectify::Grid& grid) noexcept {
   return static_cast<std::size_t>(grid.width_px) * static_cast<std::size_t>(grid.height_px);
@@ -105,7 +106,9 @@ Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_obj
   for (int k = 0; k < part.surface_count; ++k) {
     const SurfaceSample& s = samples.samples[candidates[order[k]]];
     const Vec3 p = object_T_work * Vec3{s.x_mm, s.y_mm, s.z_mm};
-    const Vec3 n = object_T_work.rotation * normalized({-s.slope_x, -s.slope_y, 1.0});
+    Vec3 n = object_T_work.rotation * normalized({-s.slope_x, -s.slope_y, 1.0});
+    // What is nearly parallel to the main plane is: the rest of its slope is noise.
+    if (n.x * n.x + n.y * n.y < kParallel * kParallel) n = {0, 0, 1};
     part.surface[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
                        static_cast<float>(n.x), static_cast<float>(n.y)};
   }
