@@ -56,6 +56,7 @@ bool has_edge(const refine::FineImages& images, const Vec3& p_mm, const Vec3& fa
 // Where the contour is to be seen from: a little inside it the surface, a little outside something
 // lower.
 constexpr double kProbe_px = 2.5;
+constexpr double kWallShare = 0.75;
 
 enum class Verdict { kUnseen, kContradicted, kConfirmed };
 
@@ -129,7 +130,11 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   for (const model::ContourPoint& p : part.contour_points()) {
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
-    const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, config);
+    // A side wall that leans toward the sensor draws the fall out over its own width.
+    VerifyConfig leaning = config;
+    leaning.edge_tolerance_px +=
+        kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
+    const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, leaning);
     if (verdict == Verdict::kUnseen) continue;
     ++out.contour.visible_count;
     visible_weight += weight(p);

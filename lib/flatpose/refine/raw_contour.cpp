@@ -11,6 +11,8 @@ constexpr int kWalkLengthMax = 64;
 // the part.
 constexpr int kSpikeLengthMax = 6;
 // A slope goes on from point to point by at least this share of the tolerance.
+// The foot of a fall: this share of the step below the surface.
+constexpr double kFootShare = 0.8;
 constexpr double kRiseShare = 0.3;
 
 enum class Standing { kOn, kBelow, kAbove, kMissing };
@@ -107,6 +109,35 @@ Vec3 end_of_slope(const Line& line, Pixel from, const Vec3& from_mm, int dcolumn
   return end_mm;
 }
 
+double offset_from(const model::ContourPoint& c, const Vec3& p_mm) noexcept {
+  return (p_mm.x - c.x_mm) * c.nx + (p_mm.y - c.y_mm) * c.ny;
+}
+
+struct OffsetMean {
+  double sum_mm = 0.0;
+  int count = 0;
+  [[nodiscard]] double mean_or(double otherwise_mm) const noexcept {
+    return count > 0 ? sum_mm / count : otherwise_mm;
+  }
+};
+
+// The points from a pixel on that have left the surface but not reached the foot of the step.
+OffsetMean points_on_the_way(const Line& line, Pixel from, const Step& step,
+                             const model::ContourPoint& c) noexcept {
+  constexpr int kPointCountMax = 8;
+  const double foot_z_mm = c.z_mm - kFootShare * c.step_mm;
+  OffsetMean mean;
+  Pixel pixel = from;
+  while (mean.count < kPointCountMax) {
+    Vec3 p_mm;
+    if (line.at(pixel, &p_mm) == Standing::kMissing || p_mm.z < foot_z_mm) break;
+    mean.sum_mm += offset_from(c, p_mm);
+    ++mean.count;
+    pixel = {pixel.column + step.dcolumn, pixel.row + step.drow};
+  }
+  return mean;
+}
+
 }  // namespace
 
 Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
@@ -123,9 +154,6 @@ Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
   if (!find_start(raw, work_T_object, c, line, &pixel, &last_mm)) return {};
   if (!outward_step(line, pixel, last_mm, c.nx, c.ny, &step)) return {};
 
-  const auto offset_of = [&c](double x_mm, double y_mm) {
-    return (x_mm - c.x_mm) * c.nx + (y_mm - c.y_mm) * c.ny;
-  };
   int above_count = 0;
   for (int walked = 0; walked < kWalkLengthMax; ++walked) {
     const Pixel next{pixel.column + step.dcolumn, pixel.row + step.drow};
@@ -136,7 +164,7 @@ Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
     if (at_next == Standing::kOn || at_next == Standing::kAbove) {
       pixel = next;
       last_mm = next_mm;
-      if (offset_of(last_mm.x, last_mm.y) > config.search_mm) return {};
+      if (offset_from(c, last_mm) > config.search_mm) return {};
       continue;
     }
     const Pixel after{next.column + step.dcolumn, next.row + step.drow};
@@ -146,16 +174,21 @@ Crossing measure_crossing(const RawScan& raw, const Pose& work_T_object,
       continue;
     }
     if (!raw.scan.contains(next.column, next.row)) return {};  // the field ends here
-    const double offset_mm = offset_of(last_mm.x + 0.5 * step.dx_mm, last_mm.y + 0.5 * step.dy_mm);
+    const bool has_fallen = last_mm.z < c.z_mm - config.tolerance_mm;
+    const double step_mm = step.dx_mm * c.nx + step.dy_mm * c.ny;
+    const double last_offset_mm = offset_from(c, last_mm);
+    // Points on the way down stand on the side wall or are mixed of both sides: they are at the
+    // contour. Without them it lies anywhere within the next step, half of it on average.
+    const double offset_mm =
+        points_on_the_way(line, next, step, c)
+            .mean_or(has_fallen ? last_offset_mm : last_offset_mm + 0.5 * step_mm);
     if (!(std::fabs(offset_mm) <= config.search_mm)) return {};
     // A single step of the scan is as sharp as can be seen; what the slope goes on for, up and
     // down, is its width.
     const double rise_mm = kRiseShare * config.tolerance_mm;
     const Vec3 top_mm = end_of_slope(line, pixel, last_mm, -step.dcolumn, -step.drow, rise_mm);
     const Vec3 foot_mm = end_of_slope(line, pixel, last_mm, step.dcolumn, step.drow, -rise_mm);
-    const double step_mm = step.dx_mm * c.nx + step.dy_mm * c.ny;
-    const double width_mm =
-        offset_of(foot_mm.x, foot_mm.y) - offset_of(top_mm.x, top_mm.y) - step_mm;
+    const double width_mm = offset_from(c, foot_mm) - offset_from(c, top_mm) - step_mm;
     return {true, offset_mm, std::max(0.0, width_mm)};
   }
   return {};
