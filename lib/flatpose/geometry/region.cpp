@@ -18,6 +18,24 @@ bool polygon_contains(const Region& r, double x, double y) noexcept {
   return inside;
 }
 
+// Whether every corner lies on one straight line, which a slanting one may do in a box of any size.
+bool is_line(const Region& r) noexcept {
+  const Box box = bounding_box(r);
+  const double width_mm = box.x1_mm - box.x0_mm;
+  const double height_mm = box.y1_mm - box.y0_mm;
+  constexpr double kRounding = 1e-12;  // of a corner's place, as a share of the box
+  for (const double falls : {1.0, -1.0}) {
+    bool on_diagonal = true;
+    for (int i = 0; i < r.vertex_count; ++i) {
+      const double x = (r.vertex_x_mm[i] - box.x0_mm) / width_mm - 0.5;
+      const double y = (r.vertex_y_mm[i] - box.y0_mm) / height_mm - 0.5;
+      on_diagonal = on_diagonal && std::fabs(x - falls * y) < kRounding;
+    }
+    if (on_diagonal) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool Region::contains(double x, double y) const noexcept {
@@ -66,7 +84,8 @@ bool is_valid(const Region& r) noexcept {
     if (!std::isfinite(r.vertex_x_mm[i]) || !std::isfinite(r.vertex_y_mm[i])) return false;
   }
   const Box box = bounding_box(r);
-  return box.x1_mm > box.x0_mm && box.y1_mm > box.y0_mm;
+  if (!(box.x1_mm > box.x0_mm && box.y1_mm > box.y0_mm)) return false;
+  return r.kind == Region::Kind::kBox || !is_line(r);
 }
 
 }  // namespace flatpose
