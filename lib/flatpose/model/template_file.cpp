@@ -186,7 +186,9 @@ bool is_valid(const Template& part) noexcept {
       part.anchor_count < 1)
     return false;
   if (part.name.back() != '\0') return false;
-  if (part.symmetry.order < 0 || part.symmetry.order > kSymmetryOrderMax) return false;
+  for (const int order : {part.symmetry.order, part.symmetry_likely}) {
+    if (order < 0 || order > kSymmetryOrderMax) return false;
+  }
   if (!is_finite_within(part.symmetry.center_x_mm, -kCoordinateMax_mm, kCoordinateMax_mm) ||
       !is_finite_within(part.symmetry.center_y_mm, -kCoordinateMax_mm, kCoordinateMax_mm)) {
     return false;
