@@ -122,7 +122,11 @@ std::vector<std::byte> Canvas::png() const {
 }  // namespace flatpose::tool
 
 #if defined(__SANITIZE_ADDRESS__)
-// fontconfig keeps its patterns until the program ends and frees them never.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT: the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+// fontconfig keeps some patterns until the program ends and never frees them.
+extern "C" {
+const char* __lsan_default_suppressions();  // NOLINT: the sanitizer's names
+const char* __lsan_default_options();       // NOLINT
+const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+const char* __lsan_default_options() { return "print_suppressions=0"; }
+}
 #endif

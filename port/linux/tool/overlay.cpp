@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/tool/canvas.hpp"
@@ -48,34 +49,63 @@ struct Sheet {
   [[nodiscard]] double px_per_mm() const noexcept { return scale / grid.cell_mm; }
 };
 
-// Contour points lie in no order along the contour. Each becomes a dash along its tangent, long
-// enough to meet its neighbours'.
-std::vector<double> dash_half_lengths_mm(const model::Template& part) {
-  const auto points = part.contour_points();
-  std::vector<double> lengths;
+/// How far a contour point's dash reaches along its tangent, to either side.
+struct Dash {
+  double ahead_mm = 0.0;
+  double behind_mm = 0.0;
+};
+
+double distance_mm(const model::ContourPoint& p, const model::ContourPoint& q) {
+  return std::hypot(static_cast<double>(q.x_mm - p.x_mm), static_cast<double>(q.y_mm - p.y_mm));
+}
+
+// Where contours meet points crowd; the median is the distance along a contour.
+double spacing_mm(std::span<const model::ContourPoint> points) {
+  std::vector<double> nearest;
   for (const model::ContourPoint& p : points) {
-    double ahead = std::numeric_limits<double>::max();
-    double behind = ahead;
+    double least = std::numeric_limits<double>::max();
     for (const model::ContourPoint& q : points) {
-      const double dx = static_cast<double>(q.x_mm - p.x_mm);
-      const double dy = static_cast<double>(q.y_mm - p.y_mm);
-      const double along = -static_cast<double>(p.ny) * dx + static_cast<double>(p.nx) * dy;
-      const double across =
-          std::fabs(static_cast<double>(p.nx) * dx + static_cast<double>(p.ny) * dy);
-      if (across > 0.5 * std::fabs(along) || along == 0.0) continue;
-      (along > 0.0 ? ahead : behind) = std::min(along > 0.0 ? ahead : behind, std::fabs(along));
+      if (&p != &q) least = std::min(least, distance_mm(p, q));
     }
-    const double reach_mm =
-        std::min({std::max(ahead, behind), 2.0 * std::min(ahead, behind), 0.1 * part.radius_mm});
-    lengths.push_back(0.55 * reach_mm);
+    nearest.push_back(least);
   }
-  return lengths;
+  if (nearest.empty()) return 0.0;
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  return *middle;
+}
+
+// Contour points lie in no order along the contour. Each becomes a dash along its tangent that ends
+// halfway to its neighbours, and a stub where there are none.
+std::vector<Dash> dashes_of(const model::Template& part) {
+  const auto points = part.contour_points();
+  const double reach_mm = 3.0 * spacing_mm(points);
+  const double stub_mm = 0.15 * reach_mm;
+  std::vector<Dash> dashes;
+  for (const model::ContourPoint& p : points) {
+    double ahead_mm = reach_mm;
+    double behind_mm = reach_mm;
+    for (const model::ContourPoint& q : points) {
+      if (static_cast<double>(p.nx * q.nx + p.ny * q.ny) < 0.8) continue;
+      const double away_mm = distance_mm(p, q);
+      const double along_mm =
+          static_cast<double>(p.nx * (q.y_mm - p.y_mm) - p.ny * (q.x_mm - p.x_mm));
+      if (std::fabs(along_mm) < 0.8 * away_mm || away_mm == 0.0) continue;
+      double& side_mm = along_mm > 0.0 ? ahead_mm : behind_mm;
+      side_mm = std::min(side_mm, away_mm);
+    }
+    const auto length = [&](double side_mm) {
+      return side_mm < reach_mm ? 0.52 * side_mm : stub_mm;
+    };
+    dashes.push_back({length(ahead_mm), length(behind_mm)});
+  }
+  return dashes;
 }
 
 class Artist {
  public:
   Artist(Canvas& canvas, const Sheet& sheet, const model::Template& part)
-      : canvas_(canvas), sheet_(sheet), part_(part), halves_mm_(dash_half_lengths_mm(part)) {
+      : canvas_(canvas), sheet_(sheet), part_(part), dashes_(dashes_of(part)) {
     cairo_set_line_cap(canvas_.get(), CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(canvas_.get(), CAIRO_LINE_JOIN_ROUND);
   }
@@ -124,28 +154,34 @@ class Artist {
 
   void label(const Pose& work_T_object, const std::string& text) {
     constexpr double kSize_px = 15.0;
+    constexpr double kHeight_px = 23.0;
     canvas_.font(kSize_px, true);
     const double width = canvas_.text_width(text) + 14.0;
+    // On the side of the origin where no axis is.
     const Place at = sheet_.place(work_T_object.position_mm);
-    const double x = std::clamp(at.x + 11.0, sheet_.left + 2.0,
-                                std::max(sheet_.left + 2.0, sheet_.left + sheet_.width - width));
-    const double y = std::clamp(at.y + 11.0, sheet_.top + 2.0,
-                                std::max(sheet_.top + 2.0, sheet_.top + sheet_.height - 24.0));
+    const Vec3 between = work_T_object.rotation.column(0) + work_T_object.rotation.column(1);
+    const Vec3 away = -normalized({between.x, -between.y, 0.0});
+    const double x_middle = at.x + away.x * (14.0 + 0.5 * width);
+    const double y_middle = at.y + away.y * (14.0 + 0.5 * kHeight_px);
+    const double x = kept(x_middle - 0.5 * width, sheet_.left, sheet_.width - width);
+    const double y = kept(y_middle - 0.5 * kHeight_px, sheet_.top, sheet_.height - kHeight_px);
     canvas_.colour(kDark, 0.78);
-    canvas_.rounded_box(x, y, width, 23.0, 5.0);
+    canvas_.rounded_box(x, y, width, kHeight_px, 5.0);
     canvas_.colour(kInk);
     canvas_.text(x + 7.0, y + 16.8, text);
   }
 
  private:
+  static double kept(double value, double low, double room) {
+    return std::clamp(value, low + 2.0, std::max(low + 2.0, low + room - 2.0));
+  }
+
   void dash(const Pose& work_T_object, int i) {
     const model::ContourPoint& p = part_.contour[i];
-    const double half_mm = halves_mm_[i];
     const Vec3 middle{p.x_mm, p.y_mm, p.z_mm};
-    const Vec3 along{-half_mm * static_cast<double>(p.ny), half_mm * static_cast<double>(p.nx),
-                     0.0};
-    const Place a = sheet_.place(work_T_object * (middle - along));
-    const Place b = sheet_.place(work_T_object * (middle + along));
+    const Vec3 tangent{-static_cast<double>(p.ny), p.nx, 0.0};
+    const Place a = sheet_.place(work_T_object * (middle - dashes_[i].behind_mm * tangent));
+    const Place b = sheet_.place(work_T_object * (middle + dashes_[i].ahead_mm * tangent));
     cairo_move_to(canvas_.get(), a.x, a.y);
     cairo_line_to(canvas_.get(), b.x, b.y);
   }
@@ -197,7 +233,7 @@ class Artist {
   Canvas& canvas_;
   const Sheet& sheet_;
   const model::Template& part_;
-  std::vector<double> halves_mm_;
+  std::vector<Dash> dashes_;
 };
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `length_mm`.
@@ -222,7 +258,8 @@ void draw_scale_bar(Canvas& canvas, double px_per_mm, double x, double y) {
   canvas.text(x, y + 23.0, formatted("%g mm", length_mm));
 }
 
-double draw_heights(Canvas& canvas, const Relief& relief, double right, double y) {
+// The tint as z in the frame at the face: in a scan seen along +z it falls toward the top.
+double draw_heights(Canvas& canvas, const Relief& relief, int up_sign, double right, double y) {
   constexpr int kWidth = 150;
   for (int i = 0; i < kWidth; ++i) {
     canvas.colour(tint(i / (kWidth - 1.0)));
@@ -230,8 +267,8 @@ double draw_heights(Canvas& canvas, const Relief& relief, double right, double y
   }
   canvas.font(13.0);
   canvas.colour(kInk);
-  const std::string low = formatted("%.4g", relief.low_mm);
-  const std::string high = formatted("%.4g mm", relief.high_mm);
+  const std::string low = formatted("z %.1f", up_sign * relief.low_mm);
+  const std::string high = formatted("%.1f mm", up_sign * relief.high_mm);
   canvas.text(right - kWidth, y + 23.0, low);
   canvas.text(right - canvas.text_width(high), y + 23.0, high);
   return right - kWidth;
@@ -272,7 +309,7 @@ void draw_footer(Canvas& canvas, const Sheet& sheet, const Relief& relief, const
   if (!relief.xrgb.empty()) {
     draw_scale_bar(canvas, sheet.px_per_mm(), left, top + 16.0);
     left += 190.0;
-    right = draw_heights(canvas, relief, right, top + 14.0) - 20.0;
+    right = draw_heights(canvas, relief, loaded.up_sign(), right, top + 14.0) - 20.0;
     right = draw_key(canvas, right, top + 23.0) - 16.0;
   }
   canvas.font(15.0, true);

@@ -110,8 +110,8 @@ void shade(const Heights& heights, double noise_mm, Relief& relief) {
 }  // namespace
 
 Colour tint(double share) noexcept {
-  static constexpr Colour kStops[] = {{0.14, 0.19, 0.29}, {0.20, 0.33, 0.44}, {0.33, 0.49, 0.55},
-                                      {0.56, 0.64, 0.61}, {0.80, 0.77, 0.66}, {0.93, 0.89, 0.80}};
+  static constexpr Colour kStops[] = {{0.19, 0.25, 0.36}, {0.25, 0.39, 0.50}, {0.38, 0.54, 0.60},
+                                      {0.60, 0.67, 0.63}, {0.80, 0.77, 0.66}, {0.92, 0.88, 0.80}};
   constexpr int kLast = static_cast<int>(std::size(kStops)) - 1;
   const double place = std::clamp(share, 0.0, 1.0) * kLast;
   const int below = std::min(static_cast<int>(place), kLast - 1);

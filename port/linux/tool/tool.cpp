@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <new>
 #include <ostream>
 #include <sstream>
@@ -29,7 +28,16 @@ constexpr Command kCommands[] = {
     {"simulate", "make a scan whose truth is known", add_simulate},
 };
 
-// CLI11 explains over several lines and in its own words; this is the tool's way of saying it.
+// What stands on the line that no option or command takes; CLI11 complains of something missing
+// first, though the reason is most often this.
+std::string stray_text(const CLI::App& app) {
+  for (const std::string& text : app.remaining(true)) {
+    if (text.size() > 1 && text != "--") return port::printable(text, 60);
+  }
+  return {};
+}
+
+// CLI11's messages, made one line in the tool's own form.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = "command line";
   std::string help = "flatpose --help";
@@ -38,9 +46,14 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     help = "flatpose " + what + " --help";
   }
   std::string why = error.what();
+  if (const std::string stray = stray_text(app); !stray.empty()) {
+    const bool has_command = !app.get_subcommands().empty();
+    const char* kind = !has_command ? "command" : stray[0] == '-' ? "option" : "argument";
+    why = "unknown " + std::string(kind) + " \"" + stray + "\"";
+  } else if (app.get_subcommands().empty()) {
+    why = "a command is missing";
+  }
   while (!why.empty() && (why.back() == '.' || why.back() == '\n')) why.pop_back();
-  if (!why.empty() && why.size() > 1 && std::islower(static_cast<unsigned char>(why[1])) != 0)
-    why[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(why[0])));
   std::replace(why.begin(), why.end(), '\n', ' ');
   return port::InputError(what, why, "see " + help).line();
 }
