@@ -71,6 +71,7 @@ enum Weakness : std::uint32_t {
       1U << 3,                ///< The part lies below what surrounds it: is the right side up?
   kWeakSmall = 1U << 4,       ///< Few cells across: scan more finely or teach a larger part.
   kWeakMarginThin = 1U << 5,  ///< The best wrong place in the teach scan scores nearly as much.
+  kWeakSymmetryDoubtful = 1U << 6,  ///< The declared turn does not lay the contour onto itself.
 };
 
 struct Template {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flatpose/core/maths.hpp"
 #include "flatpose/teach/symmetry.hpp"
 
 namespace flatpose::teach {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kThresholdMin = 0.65;
 constexpr double kThresholdMax = 0.88;
 // Scores of like instances differ by less than this; what resembles the part only is farther off.
-constexpr double kScoreGap = 0.06;
+constexpr double kScoreGap = 0.08;
 
 // The same place, whatever the turn: judged at the contour's middle, which a turn of a nearly
 // symmetric part leaves.
@@ -53,6 +54,17 @@ double turn_share(const model::Template& part) noexcept {
     sum += lever_mm * lever_mm;
   }
   return std::sqrt(sum / std::max(1, part.contour_count)) / part.radius_mm;
+}
+
+// Whether a turn by the declared symmetry lays most of the contour onto itself.
+bool holds_symmetry(const model::Template& part) noexcept {
+  if (part.symmetry.order == 1) return true;
+  constexpr double kOverlapMin = 0.8;
+  constexpr double kAnyTurn_rad = 1.0;
+  const double turn_rad =
+      part.symmetry.order == model::kFullSymmetry ? kAnyTurn_rad : 2.0 * kPi / part.symmetry.order;
+  return overlap_after_turn(part, part.symmetry.center_x_mm, part.symmetry.center_y_mm, turn_rad,
+                            part.cell_mm) >= kOverlapMin;
 }
 
 }  // namespace
@@ -97,6 +109,7 @@ void find_weakness(model::Template& part) noexcept {
   part.symmetry_likely =
       part.symmetry.order == 1 ? likely_symmetry(part, part.cell_mm) : part.symmetry.order;
   flag(part, model::kWeakSymmetryLikely, part.symmetry_likely != part.symmetry.order);
+  flag(part, model::kWeakSymmetryDoubtful, !holds_symmetry(part));
   flag(
       part, model::kWeakDirectionLoose,
       direction_share(part) < kDirectionShareMin || (!is_full && turn_share(part) < kTurnShareMin));

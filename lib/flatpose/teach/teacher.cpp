@@ -71,19 +71,17 @@ class Lesson {
 
     if (s = build_contour_cloud(scene, mask, work_T_object_, arena, part_); s != Status::kOk)
       return s;
-    settle_symmetry(source);
-    if (s = build_contour_cloud(scene, mask, work_T_object_, arena, part_); s != Status::kOk)
-      return s;
     const double margin_mm = std::max(1.5 * part_.cell_mm, 3.0 * scene.map.grid.cell_mm);
     if (s = build_surface_cloud(samples, work_T_object_, margin_mm, arena, part_); s != Status::kOk)
       return s;
     if (s = place_anchors(samples, work_T_object_, 3.0 * tolerance_mm, part_); s != Status::kOk)
       return s;
+    measure_steps();
+    sharpen(source, scene);
+    if (const Status found = place_symmetry(source); found != Status::kOk) return found;
     snap_anchor(samples.stride_mm);
     measure_extent();
-    if (const Status found = place_symmetry(source); found != Status::kOk) return found;
     part_.scan_T_object = source.frames.face_T_work * work_T_object_;
-    sharpen(source, scene);
     return Status::kOk;
   }
 
@@ -169,15 +167,6 @@ class Lesson {
     return {grid.x_of(x_sum / count), grid.y_of(y_sum / count), 0.0};
   }
 
-  // A symmetric part whose origin nobody gave has it on its axis, so that equivalent poses share
-  // it.
-  void settle_symmetry(const TeachScan& source) noexcept {
-    if (part_.symmetry.order == 1 || config_.origin.is_given || config_.label_origin_px.is_given)
-      return;
-    const Vec3 center = given_center(source);
-    work_T_object_.position_mm = work_T_object_ * center;
-  }
-
   [[nodiscard]] Vec3 given_center(const TeachScan& source) const noexcept {
     if (!config_.symmetry_center.is_given) return symmetry_center(part_);
     const Pose work_T_face = source.frames.work_T_face();
@@ -194,9 +183,25 @@ class Lesson {
   Status place_symmetry(const TeachScan& source) noexcept {
     if (part_.symmetry.order == 1) return Status::kOk;
     const Vec3 center = given_center(source);
+    if (!std::isfinite(center.x) || !std::isfinite(center.y)) return Status::kNoContour;
     part_.symmetry.center_x_mm = center.x;
     part_.symmetry.center_y_mm = center.y;
-    return std::isfinite(center.x) && std::isfinite(center.y) ? Status::kOk : Status::kNoContour;
+    // Where nobody gave an origin it lies on the axis, so that equivalent poses share it.
+    if (!config_.origin.is_given && !config_.label_origin_px.is_given) move_origin(center);
+    return Status::kOk;
+  }
+
+  void move_origin(const Vec3& to) noexcept {
+    const auto move = [&to](auto& p) {
+      p.x_mm = static_cast<float>(p.x_mm - to.x);
+      p.y_mm = static_cast<float>(p.y_mm - to.y);
+    };
+    for (int i = 0; i < part_.contour_count; ++i) move(part_.contour[i]);
+    for (int i = 0; i < part_.surface_count; ++i) move(part_.surface[i]);
+    for (int i = 0; i < part_.anchor_count; ++i) move(part_.anchors[i]);
+    part_.symmetry.center_x_mm -= to.x;
+    part_.symmetry.center_y_mm -= to.y;
+    work_T_object_.position_mm = work_T_object_ * to;
   }
 
   // On a part of full symmetry the search needs no angles when the anchor is its centre.
@@ -211,23 +216,24 @@ class Lesson {
     anchor.y_mm = static_cast<float>(center.y);
   }
 
-  void measure_extent() noexcept {
+  void measure_steps() noexcept {
     std::array<float, model::kContourPointCountMax> steps;
+    for (int i = 0; i < part_.contour_count; ++i) steps[i] = part_.contour[i].step_mm;
+    const auto quartile = steps.begin() + part_.contour_count / 4;
+    std::nth_element(steps.begin(), quartile, steps.begin() + part_.contour_count);
+    part_.step_mm = *quartile;
+  }
+
+  void measure_extent() noexcept {
     double radius2 = 0.0;
     const auto reach = [&](double x_mm, double y_mm) {
       const double dx = x_mm - part_.anchors[0].x_mm;
       const double dy = y_mm - part_.anchors[0].y_mm;
       radius2 = std::max(radius2, dx * dx + dy * dy);
     };
-    for (int i = 0; i < part_.contour_count; ++i) {
-      steps[i] = part_.contour[i].step_mm;
-      reach(part_.contour[i].x_mm, part_.contour[i].y_mm);
-    }
+    for (const model::ContourPoint& p : part_.contour_points()) reach(p.x_mm, p.y_mm);
     for (const model::SurfacePoint& p : part_.surface_points()) reach(p.x_mm, p.y_mm);
     part_.radius_mm = std::sqrt(radius2);
-    const auto quartile = steps.begin() + part_.contour_count / 4;
-    std::nth_element(steps.begin(), quartile, steps.begin() + part_.contour_count);
-    part_.step_mm = *quartile;
   }
 
   [[nodiscard]] refine::RawContourConfig raw_config() const noexcept {
