@@ -9,8 +9,10 @@
 namespace flatpose::search {
 namespace {
 
+// Saturates: a point of a valid template may lie further off than 16 bits of cells reach.
 std::int16_t rounded(double value) noexcept {
-  return static_cast<std::int16_t>(std::floor(value + 0.5));
+  constexpr double kMax = 32767.0;
+  return static_cast<std::int16_t>(std::clamp(std::floor(value + 0.5), -kMax, kMax));
 }
 
 // Half of a maximum: what a point costs that says nothing.

@@ -10,8 +10,9 @@
 //   edge     min(chamfer distance to an edge that falls the same way, kEdgeCostMax) / cos(tilt)
 //   (tilt-angle bias) height   min(|z - expected| in steps of a tolerance, kHeightCostMax) normal
 //   min(|n - expected| in steps of a tolerance, kNormalCostMax)
-// A point outside the field, on missing data, or hidden under something higher costs half: it says
-// nothing.
+// A point outside the field costs half: it says nothing. So does a surface point on missing data or
+// hidden under something higher; a contour point on missing data keeps its distance, for shadows
+// begin at contours.
 
 #include <array>
 #include <cstdint>
