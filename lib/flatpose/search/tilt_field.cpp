@@ -69,7 +69,10 @@ Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radi
   const int height_px = filled_mm.height_px;
   const int r = radius_px;
   if (r < 1 || r > kTiltWindowRadiusMax_px || !(cell_mm > 0.0)) return Status::kInvalidArgument;
-  if (!same_shape(filled_mm, field.slope_x)) return Status::kShapeMismatch;
+  for (const auto& image : {field.slope_x, field.slope_y, field.plane_mm, field.rms_mm}) {
+    if (!same_shape(filled_mm, image)) return Status::kShapeMismatch;
+  }
+  if (filled_mm.empty()) return Status::kOk;
   const ArenaScope scope(scratch);
   const RowSums sums{scratch.take_image<double>(width_px, height_px),
                      scratch.take_image<double>(width_px, height_px),

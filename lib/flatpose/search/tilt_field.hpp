@@ -26,8 +26,8 @@ struct TiltField {
 [[nodiscard]] TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept;
 
 /// Fits a plane around every cell of a filled height map.
-/// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell.  Memory: `scratch` takes four
-/// rows-images of the map. Fails: kShapeMismatch, kInvalidArgument (radius
+/// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell.  Memory: `scratch` takes
+/// three doubles a cell. Fails: kShapeMismatch, kInvalidArgument (radius
 /// outside 1..kTiltWindowRadiusMax_px), kOutOfMemory.  Thread: reentrant.
 [[nodiscard]] Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
                                     Arena& scratch, TiltField& field) noexcept;
