@@ -259,6 +259,14 @@ class Search {
   SearchMemory memory_;
 };
 
+// Beyond a right angle the tangent turns negative and would bound no slope.
+bool is_valid(const GridSearchConfig& config) noexcept {
+  constexpr double kTiltEnd_rad = 1.57;
+  return config.angle_step_rad > 0.0 && config.stride_px >= 1 && config.max_tilt_rad >= 0.0 &&
+         config.max_tilt_rad <= kTiltEnd_rad && config.cost_share_max >= 0.0 &&
+         config.cost_share_max <= 1.0;
+}
+
 }  // namespace
 
 void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
@@ -293,9 +301,10 @@ Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField
                                      const model::Template& part, int anchor_index,
                                      const GridSearchConfig& config, Arena& scratch,
                                      std::span<Candidate> candidates) noexcept {
-  if (anchor_index < 0 || anchor_index >= part.anchor_count || !(config.angle_step_rad > 0.0)) {
+  if (anchor_index < 0 || anchor_index >= part.anchor_count || !is_valid(config)) {
     return Status::kInvalidArgument;
   }
+  if (!same_shape(images.missing, field.rms_mm)) return Status::kShapeMismatch;
   const ArenaScope scope(scratch);
   Search search(images, field, part, anchor_index, config);
   if (!search.take_memory(scratch)) return Status::kOutOfMemory;

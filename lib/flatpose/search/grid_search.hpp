@@ -18,12 +18,12 @@ inline constexpr int kAngleCountMax = 720;
 struct GridSearchConfig {
   ScoreConfig score;
   int stride_px =
-      1;  ///< Only every so many-th cell is a place; the refinement comes home from further.
-  double angle_step_rad = 0.12;  ///< Finer costs time in proportion.
-  double max_tilt_rad = 0.8;     ///< Steeper places are no hypotheses.
+      1;  ///< Only every so many-th cell is a place, >= 1; the refinement comes home from further.
+  double angle_step_rad = 0.12;  ///< > 0; finer costs time in proportion.
+  double max_tilt_rad = 0.8;     ///< Steeper places are no hypotheses; 0..1.57.
   double planarity_mm = 0.5;  ///< Places whose plane fit leaves more than this are no hypotheses.
   double cost_share_max =
-      0.6;  ///< Hypotheses dearer than this share of the worst are no candidates.
+      0.6;  ///< Hypotheses dearer than this share of the worst are no candidates; 0..1.
 };
 
 /// One hypothesis worth a closer look.
@@ -47,7 +47,8 @@ void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept;
 
 /// Finds the best hypotheses that differ in place or angle.
 /// Shape: `field` fits `images.grid`.  Cost: places x angles x points, ended early against the best
-/// so far. Memory: `scratch` takes about 60 bytes a cell.  Fails: kOutOfMemory, kInvalidArgument.
+/// so far. Memory: `scratch` takes about 70 bytes a cell.  Fails: kOutOfMemory, kShapeMismatch,
+/// kInvalidArgument (anchor_index; a config field out of its range).
 /// Ties: by row, column, angle.  Thread: reentrant.
 [[nodiscard]] Result<GridSearchResult> grid_search(const SearchImages& images,
                                                    const TiltField& field,
