@@ -81,8 +81,8 @@ class Tester {
     for (const double factor : kCellFactors) {
       find(factor);
       if (factor == 1.0) note_first(trial);
-      if (!trial.best || result_->match_count == 0) continue;
-      note_spread(trial, nearest(*trial.best));
+      if (!trial.best) break;
+      if (result_->match_count > 0) note_spread(trial, result_->matches[0]);
     }
     return trial;
   }
@@ -90,35 +90,32 @@ class Tester {
  private:
   void find(double factor) {
     config_.cell_mm = factor * part_.cell_mm;
-    // With room for neighbours, so that the same one of several is compared.
-    config_.max_matches = factor == 1.0 ? 1 : 8;
     const Status s = locator_.locate(part_, loaded_.scan.view(), loaded_.frames, config_,
                                      port::SteadyClock{}, *result_);
     if (s != Status::kOk) fail(s, Doing::kLocate, loaded_.path);
   }
 
-  void note_first(Trial& trial) const {
+  void note_first(Trial& trial) {
     trial.outcome = result_->outcome;
     trial.rejected_score = std::max(result_->best_rejected_score, result_->rival_score);
     if (result_->match_count == 0) return;
     trial.best = result_->matches[0];
     trial.over_threshold = trial.best->score - part_.score_threshold;
+    look_near(trial.best->face_T_object.position_mm);
   }
 
-  [[nodiscard]] const locate::Match& nearest(const locate::Match& to) const {
-    const auto distance = [&to](const locate::Match& match) {
-      return norm(match.face_T_object.position_mm - to.face_T_object.position_mm);
-    };
-    const auto found = result_->found();
-    return *std::min_element(found.begin(), found.end(), [&](const auto& a, const auto& b) {
-      return distance(a) < distance(b);
-    });
+  // What follows looks for the same one of several.
+  void look_near(const Vec3& position_mm) {
+    config_.region = Region{};
+    config_.region.kind = Region::Kind::kCircle;
+    config_.region.x_mm = position_mm.x;
+    config_.region.y_mm = position_mm.y;
+    config_.region.radius_mm = 0.5 * part_.radius_mm;
   }
 
   void note_spread(Trial& trial, const locate::Match& again) const {
     const double off_mm =
         norm(again.face_T_object.position_mm - trial.best->face_T_object.position_mm);
-    if (off_mm > 0.5 * part_.radius_mm) return;  // another instance
     ++trial.repeats;
     trial.position_spread_mm = std::max(trial.position_spread_mm, off_mm);
     trial.rotation_spread_deg =

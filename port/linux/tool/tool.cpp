@@ -32,7 +32,7 @@ constexpr Command kCommands[] = {
 // first, though the reason is most often this.
 std::string stray_text(const CLI::App& app) {
   for (const std::string& text : app.remaining(true)) {
-    if (text.size() > 1 && text != "--") return port::printable(text, 60);
+    if (!text.empty() && text != "--") return port::printable(text, 60);
   }
   return {};
 }

@@ -85,14 +85,14 @@ TEST_F(Json, OfTeachAndInfoTellTheTemplate) {
 TEST_F(Json, OfInfoTellsScansAndWorkFiles) {
   const json scan = json::parse(run({"info", path("a.pcd"), "--json"}).out);
   EXPECT_EQ(scan.at("kind"), "scan");
-  EXPECT_EQ(scan.at("width_px"), 300);
-  EXPECT_EQ(scan.at("height_px"), 250);
+  EXPECT_EQ(scan.at("width_px"), 200);
+  EXPECT_EQ(scan.at("height_px"), 160);
   expect_numbers(scan.at("min_mm"), 3);
   expect_numbers(scan.at("max_mm"), 3);
   expect_numbers(scan.at("pitch_mm"), 2);
   EXPECT_NEAR(scan.at("pitch_mm")[0].get<double>(), 2.0, 0.05);
   EXPECT_NEAR(scan.at("noise_mm").get<double>(), 0.4, 0.1);
-  EXPECT_NEAR(scan.at("min_mm")[0].get<double>(), -299.0, 2.0);
+  EXPECT_NEAR(scan.at("min_mm")[0].get<double>(), -199.0, 2.0);
   EXPECT_LT(scan.at("missing_share").get<double>(), 0.1);
   EXPECT_EQ(json::parse(run({"info", path("a.pcd"), "--json", "--up", "-z"}).out).at("up"), "-z");
 

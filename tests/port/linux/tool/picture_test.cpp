@@ -41,9 +41,9 @@ TEST_F(Picture, OfAMatchHasTheContourWhereThePartIs) {
     EXPECT_LE(picture.width_px, 1300);
     const Box box = orange(picture);
     EXPECT_GT(box.count, 500);
-    // The field is 600 mm wide, the middle of both at 0: two pixels a millimetre, y upward.
-    const double px_per_mm = picture.width_px / 600.0;
-    const double map_middle_px = 0.5 * px_per_mm * 500.0;
+    // The field is 400 x 320 mm with its middle at 0; y runs upward in the picture.
+    const double px_per_mm = picture.width_px / 400.0;
+    const double map_middle_px = 0.5 * px_per_mm * 320.0;
     EXPECT_NEAR(0.5 * (box.x0 + box.x1), 0.5 * picture.width_px + px_per_mm * pose.position_mm.x,
                 30.0);
     EXPECT_NEAR(0.5 * (box.y0 + box.y1), map_middle_px - px_per_mm * pose.position_mm.y, 30.0);

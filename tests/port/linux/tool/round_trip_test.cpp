@@ -18,6 +18,8 @@ double turn_between_deg(const Pose& a, const Pose& b) {
   return angle_between_rad(a.rotation, b.rotation) * kDegPerRad;
 }
 
+const Words kWide{"--cols", "300", "--rows", "250"};  // more parts need more room
+
 class RoundTrip : public Workbench {
  protected:
   /// Teaches part A of scan `a` and returns simulator-object_T_taught-object.
@@ -36,7 +38,7 @@ class RoundTrip : public Workbench {
 TEST_F(RoundTrip, PoseIsWithinAMillimetreAndADegreeOfTheTruth) {
   const Pose sim_T_taught = learn(simulate("single", 3, "a.pcd"));
   for (const int seed : {4, 5}) {
-    const json truth = simulate("low", seed, "b.pcd");
+    const json truth = simulate_as("low", seed, "b.pcd", kWide);
     const json found = locate("pad.fpt", "b.pcd");
     ASSERT_EQ(found.at("matches").size(), 1U);
     expect_near(pose_of(found.at("matches")[0]), pose_of(truth.at("instances")[0]) * sim_T_taught);
@@ -59,7 +61,7 @@ TEST_F(RoundTrip, OriginAndAxisAreAsGiven) {
   EXPECT_NEAR(taught.position_mm.x, -4.0, 1e-9);
   EXPECT_NEAR(taught.position_mm.y, 10.5, 1e-9);
   EXPECT_LT(taught.rotation.m[3], -0.99);
-  const json moved = simulate("low", 4, "b.pcd");
+  const json moved = simulate_as("low", 4, "b.pcd", kWide);
   const json found = locate("pad.fpt", "b.pcd");
   expect_near(pose_of(found.at("matches")[0]), pose_of(moved.at("instances")[0]) * sim_T_taught);
 }
@@ -149,7 +151,9 @@ TEST_F(RoundTrip, WorkFramePutsAllOnThePlane) {
 }
 
 TEST_F(RoundTrip, FreeTurnHasNoSigma) {
-  simulate("single", 3, "a.pcd", {"--part", "washer"});
+  simulate_as("single", 3, "a.pcd",
+              {"--part", "washer", "--cols", "250", "--rows", "200", "--field-x-mm", "250",
+               "--field-y-mm", "200"});
   const json taught = teach("a.pcd", "washer.fpt", {"--symmetry", "full"});
   EXPECT_EQ(taught.at("symmetry").at("order"), "full");
   const json found = locate("washer.fpt", "a.pcd");

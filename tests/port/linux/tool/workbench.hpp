@@ -60,12 +60,17 @@ class Workbench : public testing::Test {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
-  /// Simulates and returns the truth. 300 x 250 points at 2 mm keep the sanitizers' time short.
+  /// Simulates and returns the truth. 200 x 160 points at 2 mm keep the sanitizers' time short.
   json simulate(const std::string& scene, int seed, const std::string& name,
                 const Words& more = {}) const {
+    Words words{"--cols", "200", "--rows", "160", "--field-x-mm", "400", "--field-y-mm", "320"};
+    words.insert(words.end(), more.begin(), more.end());
+    return simulate_as(scene, seed, name, words);
+  }
+  json simulate_as(const std::string& scene, int seed, const std::string& name,
+                   const Words& more) const {
     Words words{"simulate", scene,      "--seed",  std::to_string(seed),
-                "-o",       path(name), "--truth", path(name + ".json"),
-                "--cols",   "300",      "--rows",  "250"};
+                "-o",       path(name), "--truth", path(name + ".json")};
     words.insert(words.end(), more.begin(), more.end());
     const Ran ran = run(words);
     EXPECT_EQ(ran.code, 0) << ran.err;
