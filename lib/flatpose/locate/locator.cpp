@@ -78,6 +78,7 @@ class Pipeline {
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
     result_.timings.rectify_us = lap();
+    if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
     if (s != Status::kOk) return s;
     // Fewer edges than a quarter of the contour: an empty floor.
     constexpr double kContourShareMin = 0.25;
