@@ -159,7 +159,8 @@ class Artist {
     const double width = canvas_.text_width(text) + 14.0;
     // On the side of the origin where no axis is.
     const Place at = sheet_.place(work_T_object.position_mm);
-    const Vec3 between = work_T_object.rotation.column(0) + work_T_object.rotation.column(1);
+    const Rotation& r = work_T_object.rotation;
+    const Vec3 between = r.column(0) + r.column(1) + 2.0 * r.column(2);
     const Vec3 away = -normalized({between.x, -between.y, 0.0});
     const double x_middle = at.x + away.x * (14.0 + 0.5 * width);
     const double y_middle = at.y + away.y * (14.0 + 0.5 * kHeight_px);

@@ -37,7 +37,8 @@ struct Scan {
 };
 
 double flat(double x, double y) { return 0.1 * x - 0.05 * y + 12.0; }
-bool in_block(double x, double y) { return x > 0.0 && x < 70.0 && y > 20.0 && y < 110.0; }
+// 70 % of the field.
+bool in_block(double x, double y) { return x > -20.0 && x < 85.0 && y > 20.0 && y < 118.0; }
 
 TEST(WorkPlane, TiltedPlaneIsFoundAndItsFrameIsRight) {
   for (const int up_sign : {1, -1}) {
