@@ -143,7 +143,10 @@ class Search {
     Place place;
     place.column = static_cast<std::int16_t>(x);
     place.row = static_cast<std::int16_t>(y);
-    place.height_unit = rounded((field_.plane_mm(x, y) - images_.base_mm) * kHeightUnitsPerMm);
+    // Saturates as the heights that it is held against do, so that no difference overflows.
+    place.height_unit =
+        rounded(std::clamp((field_.plane_mm(x, y) - images_.base_mm) * kHeightUnitsPerMm,
+                           -kHeightUnitMax, kHeightUnitMax));
     place.slope_x_q8 = rounded(sx * unit_per_cell_q8);
     place.slope_y_q8 = rounded(sy * unit_per_cell_q8);
     place.normal_x_unit = static_cast<std::int16_t>(rounded(normal.x * kNormalUnits));

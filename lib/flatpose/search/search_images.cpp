@@ -25,14 +25,13 @@ double middle_height(ImageView<const float> filled_mm) noexcept {
 }
 
 void quantise_heights(const SearchImages& images) noexcept {
-  constexpr double kUnitMax = 32767.0;  // 2 m from the middle; beyond it heights saturate
   for (int y = 0; y < images.grid.height_px; ++y) {
     const float* filled_mm = images.filled_mm.row(y);
     std::int16_t* unit = images.height_unit.row(y);
     for (int x = 0; x < images.grid.width_px; ++x) {
       const double value = std::floor(
           (static_cast<double>(filled_mm[x]) - images.base_mm) * kHeightUnitsPerMm + 0.5);
-      unit[x] = static_cast<std::int16_t>(std::clamp(value, -kUnitMax, kUnitMax));
+      unit[x] = static_cast<std::int16_t>(std::clamp(value, -kHeightUnitMax, kHeightUnitMax));
     }
   }
 }

@@ -15,6 +15,8 @@
 namespace flatpose::search {
 
 inline constexpr int kHeightUnitsPerMm = 16;
+/// 2 m from the middle; beyond it heights saturate.
+inline constexpr double kHeightUnitMax = 32767.0;
 inline constexpr int kNormalUnits = 127;  ///< A component of 1.
 inline constexpr std::uint8_t kEdgeCostMax =
     15;  ///< Thirds of a coarse cell: beyond five cells an edge is no evidence.

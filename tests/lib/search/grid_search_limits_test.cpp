@@ -111,6 +111,18 @@ TEST(GridSearch, StandsAnySlopeOfTheSurface) {
   EXPECT_EQ(run(ground.made, *ground.part, ground.config).status, Status::kOk);
 }
 
+TEST(GridSearch, StandsAnyHeightOfTheSurface) {
+  Ground ground;
+  std::mt19937 random(3);
+  ground.config.score.height_tolerance_mm = 0.01;
+  ground.made.for_each([&](int x, int y) {
+    const double height_mm = uniform(random, -2e6, 2e6);
+    ground.made.field.plane_mm(x, y) = static_cast<float>(height_mm);
+    ground.made.images.height_unit(x, y) = height_mm > 0.0 ? 32767 : -32767;
+  });
+  EXPECT_EQ(run(ground.made, *ground.part, ground.config).status, Status::kOk);
+}
+
 TEST(GridSearch, TakesPlacesOfItsStrideOnly) {
   Ground ground;
   for (const int stride_px : {1, 2, 3, 7, 100}) {
