@@ -193,6 +193,23 @@ TEST(Scene, BothWaysToRectifyAgree) {
   }
 }
 
+TEST(Scene, IsRectifiedAsAsked) {
+  // A point alone makes no triangle, but a median.
+  const Surroundings s;
+  Scan scan = scan_of(Box{}, s);
+  for (int r = 0; r < scan.height_px; ++r) {
+    for (int c = 0; c < 30; ++c) {
+      if (r != 50 || c != 15) scan.lose(c, r);
+    }
+  }
+  const int column = static_cast<int>(std::lround(made_grid().column_of(15 * s.pitch_mm)));
+  const int row = static_cast<int>(std::lround(made_grid().row_of(50 * s.pitch_mm)));
+  const Built paint(scan, config_for(s, rectify::Method::kPaint));
+  const Built bucket(scan, config_for(s, rectify::Method::kBucket));
+  EXPECT_EQ(paint.scene.missing(column, row), 1);
+  EXPECT_EQ(bucket.scene.missing(column, row), 0);
+}
+
 TEST(Scene, EdgeListAndEdgeMapAreOne) {
   const Surroundings s;
   const Built built(scan_of(Box{}, s), config_for(s));
