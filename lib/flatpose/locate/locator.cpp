@@ -229,11 +229,13 @@ class Pipeline {
   void note_rival(double score, const Pose& pose) noexcept {
     constexpr double kScoreGap = 0.02;
     constexpr double kAngleGap_rad = 10.0 * kRadPerDeg;
-    const Pose rival = model::canonical_equivalent(frames_.face_T_work * pose, part_.symmetry);
     for (int i = 0; i < accepted_count_; ++i) {
-      const Pose& accepted = result_.matches[i].face_T_object;
-      const bool is_other = norm(rival.position_mm - accepted.position_mm) < part_.radius_mm &&
-                            angle_between_rad(rival.rotation, accepted.rotation) > kAngleGap_rad;
+      // Seen from the match, and turned by its symmetry as near to it as can be.
+      const Pose match_T_rival = model::canonical_equivalent(
+          result_.matches[i].face_T_object.inverse() * (frames_.face_T_work * pose),
+          part_.symmetry);
+      const bool is_other = norm(match_T_rival.position_mm) < part_.radius_mm &&
+                            angle_between_rad(match_T_rival.rotation, Rotation{}) > kAngleGap_rad;
       if (!is_other) continue;
       result_.rival_score = std::max(result_.rival_score, score);
       is_ambiguous_ |= i == 0 && score > result_.matches[0].score - kScoreGap;

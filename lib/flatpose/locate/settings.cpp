@@ -63,7 +63,7 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
 
   s.verify.height_tolerance_mm = height_tolerance_mm;
   s.screen.height_tolerance_mm = s.wide.height_reach_mm;
-  s.screen.edge_tolerance_px = 2.0 * search::kEdgeCostMax / 3.0;
+  s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;
   s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;
 }

@@ -45,12 +45,17 @@ bool is_claimed(const refine::FineImages& images, ImageView<const std::uint8_t> 
   return claimed.contains(cell.column, cell.row) && claimed(cell.column, cell.row) != 0;
 }
 
-bool has_edge(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
-              double tolerance_px) noexcept {
+// How well an edge that falls the right way agrees with a contour point: 1 within the tolerance,
+// then less and less, 0 beyond kFadeShare tolerances. A hard bound would let a fraction of a cell
+// decide.
+double edge_agreement(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
+                      double tolerance_px) noexcept {
+  constexpr double kFadeShare = 2.5;
   const Cell cell = cell_at(images.grid, p_mm.x, p_mm.y);
-  if (!images.height_mm.contains(cell.column, cell.row)) return false;
+  if (!images.height_mm.contains(cell.column, cell.row)) return 0.0;
   const int octant = image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
-  return images.edge_distance_third_px[octant](cell.column, cell.row) <= 3.0 * tolerance_px;
+  const double distance_px = images.edge_distance_third_px[octant](cell.column, cell.row) / 3.0;
+  return std::clamp((kFadeShare - distance_px / tolerance_px) / (kFadeShare - 1.0), 0.0, 1.0);
 }
 
 // Where the contour is to be seen from: a little inside it the surface, a little outside something
@@ -58,18 +63,20 @@ bool has_edge(const refine::FineImages& images, const Vec3& p_mm, const Vec3& fa
 constexpr double kProbe_px = 2.5;
 constexpr double kWallShare = 0.75;
 
-enum class Verdict { kUnseen, kContradicted, kConfirmed };
+struct Verdict {
+  bool seen = false;
+  double agreement = 0.0;  ///< 1: confirmed, 0: contradicted.
+};
 
 Verdict judge_contour(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
                       const Vec3& probe_mm, const VerifyConfig& config) noexcept {
   const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
-  if (inside == Sight::kNothing || inside == Sight::kAbove) return Verdict::kUnseen;
+  if (inside == Sight::kNothing || inside == Sight::kAbove) return {};
   const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
-  if (outside == Sight::kAbove) return Verdict::kUnseen;
-  const bool edge = has_edge(images, p_mm, falling, config.edge_tolerance_px);
-  if (outside == Sight::kNothing && !edge)
-    return Verdict::kUnseen;  // the scan ends or is dark here
-  return inside == Sight::kAt && edge ? Verdict::kConfirmed : Verdict::kContradicted;
+  if (outside == Sight::kAbove) return {};
+  const double agreement = edge_agreement(images, p_mm, falling, config.edge_tolerance_px);
+  if (outside == Sight::kNothing && agreement == 0.0) return {};  // the scan ends or is dark here
+  return {true, inside == Sight::kAt ? agreement : 0.0};
 }
 
 double share(double confirmed, double visible) noexcept {
@@ -135,12 +142,11 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     leaning.edge_tolerance_px +=
         kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
     const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, leaning);
-    if (verdict == Verdict::kUnseen) continue;
+    if (!verdict.seen) continue;
     ++out.contour.visible_count;
     visible_weight += weight(p);
-    if (verdict != Verdict::kConfirmed) continue;
-    ++out.contour.confirmed_count;
-    confirmed_weight += weight(p);
+    if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
+    confirmed_weight += verdict.agreement * weight(p);
   }
   out.visible = static_cast<double>(out.surface.visible_count) / part.surface_count;
   out.score = share(out.surface.confirmed_count, out.surface.visible_count) *

@@ -15,7 +15,7 @@ constexpr double kChainShareMin = 0.04;
 constexpr double kStepOverNoiseMin = 8.0;
 // Edges around a corner disagree about their direction; where the mean of unit directions is
 // shorter than this, the point holds no direction well and is left out.
-constexpr float kCoherenceMin = 0.93F;
+constexpr float kCoherenceMin = 0.86F;
 constexpr int kSmoothReach_px = 3;
 
 class ContourBuilder {

@@ -39,6 +39,36 @@ class Partition {
     areas_ = arena.take<Area>(kAreaCountMax + 1);
   }
 
+  /// Draws the barriers, floods the background, labels what is shut in and writes what of it is the
+  /// part. Edges lower than `step_min_mm` are no contours.
+  Status divide(const Frames& frames, const Region& region, float step_min_mm,
+                PartMask& mask) noexcept {
+    step_min_mm_ = step_min_mm;
+    area_count_ = 0;
+    region_cell_count_ = 0;
+    background_mm_ = -std::numeric_limits<double>::infinity();
+    draw(frames, region);
+    flood_background();
+    const std::int32_t shut_in_count = label_areas();
+    // A part fills a good share of the region that is drawn around it.
+    constexpr int kRegionSharePerCell = 8;
+    const bool has_region = region.kind != Region::Kind::kAll;
+    if (has_region && shut_in_count * kRegionSharePerCell < region_cell_count_) {
+      take_region_whole();
+    } else {
+      vote();
+      if (largest() == 0) return Status::kNoPart;
+      if (has_region) {
+        take_all();
+      } else if (const Status s = take_largest(); s != Status::kOk) {
+        return s;
+      }
+    }
+    write(mask);
+    return mask.cell_count >= kAreaCellsMin ? Status::kOk : Status::kNoPart;
+  }
+
+ private:
   void draw(const Frames& frames, const Region& region) noexcept {
     for (int y = 0; y < height_px_; ++y) {
       for (int x = 0; x < width_px_; ++x) {
@@ -49,6 +79,7 @@ class Partition {
       }
     }
     for (const image::EdgePoint& e : scene_.edges) {
+      if (e.step_mm < step_min_mm_) continue;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           const int x = e.column + dx;
@@ -116,6 +147,7 @@ class Partition {
     }
     if (background_count > 0.0) background_mm_ = background_sum_mm / background_count;
     for (const image::EdgePoint& e : scene_.edges) {
+      if (e.step_mm < step_min_mm_) continue;
       const std::int32_t upper = area_beside(e, -1.0F);
       const std::int32_t lower = area_beside(e, 1.0F);
       if (upper == lower) continue;  // inside of a rough area
@@ -178,6 +210,7 @@ class Partition {
     std::int32_t falls_away = 0;
     std::int32_t falls_toward = 0;
     for (const image::EdgePoint& e : scene_.edges) {
+      if (e.step_mm < step_min_mm_) continue;
       const bool upper = is_part_area(area_beside(e, -1.0F));
       const bool lower = is_part_area(area_beside(e, 1.0F));
       if (upper) mask.is_contour(e.column, e.row) = 1;
@@ -187,9 +220,6 @@ class Partition {
     mask.lies_below = falls_toward > falls_away;
   }
 
-  [[nodiscard]] std::int32_t region_cell_count() const noexcept { return region_cell_count_; }
-
- private:
   [[nodiscard]] bool is_part_area(std::int32_t label) const noexcept {
     return label > 0 && areas_[label].is_part;
   }
@@ -241,6 +271,7 @@ class Partition {
   const scene::Scene& scene_;
   int width_px_;
   int height_px_;
+  float step_min_mm_ = 0.0F;
   float step_max_mm_;  ///< Between neighbouring cells of one surface: noise, and a slope of 45
                        ///< degrees.
   ImageView<std::int32_t> label_;
@@ -250,6 +281,20 @@ class Partition {
   double background_mm_ = -std::numeric_limits<double>::infinity();
   std::int32_t region_cell_count_ = 0;
 };
+
+// The upper quartile of the steps along the part's contour: what stands out among whatever
+// roughness was taken in.
+float upper_quartile_step(const scene::Scene& scene, const PartMask& mask,
+                          std::span<float> steps_mm) noexcept {
+  std::ptrdiff_t count = 0;
+  for (const image::EdgePoint& e : scene.edges) {
+    if (mask.is_contour(e.column, e.row) != 0) steps_mm[count++] = e.step_mm;
+  }
+  if (count == 0) return 0.0F;
+  const auto quartile = steps_mm.begin() + (3 * count) / 4;
+  std::nth_element(steps_mm.begin(), quartile, steps_mm.begin() + count);
+  return *quartile;
+}
 
 }  // namespace
 
@@ -264,32 +309,24 @@ void reserve_mask_scratch(Arena& arena, const rectify::Grid& grid) noexcept {
   scene::Scene scene;
   scene.map.grid = grid;
   (void)Partition(scene, arena);
+  const std::size_t cell_count =
+      static_cast<std::size_t>(grid.width_px) * static_cast<std::size_t>(grid.height_px);
+  (void)arena.take<float>(cell_count / scene::kCellsPerEdge + 1);
 }
 
 Status find_part(const scene::Scene& scene, const Frames& frames, const Region& region,
                  Arena& scratch, PartMask& mask) noexcept {
   const ArenaScope scope(scratch);
   Partition partition(scene, scratch);
+  const std::span<float> steps_mm = scratch.take<float>(scene.edges.size());
   if (scratch.failed()) return Status::kOutOfMemory;
-  partition.draw(frames, region);
-  partition.flood_background();
-  const std::int32_t shut_in_count = partition.label_areas();
-  // A part fills a good share of the region that is drawn around it.
-  constexpr int kRegionSharePerCell = 8;
-  const bool has_region = region.kind != Region::Kind::kAll;
-  if (has_region && shut_in_count * kRegionSharePerCell < partition.region_cell_count()) {
-    partition.take_region_whole();
-  } else {
-    partition.vote();
-    if (partition.largest() == 0) return Status::kNoPart;
-    if (has_region) {
-      partition.take_all();
-    } else if (const Status s = partition.take_largest(); s != Status::kOk) {
-      return s;
-    }
-  }
-  partition.write(mask);
-  return mask.cell_count >= kAreaCellsMin ? Status::kOk : Status::kNoPart;
+  if (const Status s = partition.divide(frames, region, 0.0F, mask); s != Status::kOk) return s;
+  // Now that the part's own steps are known, what is far lower is roughness on it: without it once
+  // more.
+  constexpr float kRoughShare = 0.25F;
+  const float rough_mm = kRoughShare * upper_quartile_step(scene, mask, steps_mm);
+  if (partition.divide(frames, region, rough_mm, mask) == Status::kOk) return Status::kOk;
+  return partition.divide(frames, region, 0.0F, mask);
 }
 
 Status mask_from_labels(const scene::Scene& scene, ImageView<const std::uint8_t> labels,

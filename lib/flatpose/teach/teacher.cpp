@@ -257,7 +257,11 @@ class Lesson {
     report_.scan_count_used = 0;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       Pose work_T_object = work_T_object_;
-      if (i > 0 && !find(scans_[i], &work_T_object)) continue;
+      bool found = i == 0;
+      if (!found) {
+        if (const Status s = find(scans_[i], &work_T_object, &found); s != Status::kOk) return s;
+      }
+      if (!found) continue;
       Arena arena(memory_);
       Measured measured;
       scene::Scene scene;
@@ -271,16 +275,17 @@ class Lesson {
     return Status::kOk;
   }
 
-  bool find(const TeachScan& source, Pose* work_T_object) noexcept {
+  Status find(const TeachScan& source, Pose* work_T_object, bool* found) noexcept {
     locate::Locator locator;
     locate::LocateConfig config;
     config.min_score = 0.6;
-    if (locator.init(limits_, memory_) != Status::kOk) return false;
+    if (const Status s = locator.init(limits_, memory_); s != Status::kOk) return s;
     const Status s =
         locator.locate(part_, source.scan, source.frames, config, StoppedClock{}, result_);
-    if (s != Status::kOk || result_.match_count == 0) return false;
-    *work_T_object = source.frames.work_T_face() * result_.matches[0].face_T_object;
-    return true;
+    if (s != Status::kOk) return s;
+    *found = result_.match_count > 0;
+    if (*found) *work_T_object = source.frames.work_T_face() * result_.matches[0].face_T_object;
+    return Status::kOk;
   }
 
   // Looks for everything that resembles the part in the scan it was taught from.
@@ -314,11 +319,13 @@ bool is_valid(const TeachConfig& config, const TeachScan& first) noexcept {
   const auto finite = [](const PlanePoint& p) {
     return !p.is_given || (std::isfinite(p.x_mm) && std::isfinite(p.y_mm));
   };
-  if (config.label_origin_px.is_given &&
-      !first.scan.contains(static_cast<int>(config.label_origin_px.x_mm + 0.5),
-                           static_cast<int>(config.label_origin_px.y_mm + 0.5))) {
+  const auto in_scan = [&first](const PlanePoint& p_px) {
+    return p_px.x_mm >= 0.0 && p_px.y_mm >= 0.0 && p_px.x_mm < first.scan.width_px - 0.5 &&
+           p_px.y_mm < first.scan.height_px - 0.5;
+  };
+  if (config.label_origin_px.is_given && !in_scan(config.label_origin_px)) return false;
+  if (config.x_axis.is_given && config.x_axis.x_mm == 0.0 && config.x_axis.y_mm == 0.0)
     return false;
-  }
   return flatpose::is_valid(config.region) && config.symmetry_order >= 0 &&
          config.symmetry_order <= kSymmetryOrderMax && finite(config.origin) &&
          finite(config.x_axis) && finite(config.symmetry_center) && config.name.back() == '\0' &&
@@ -345,6 +352,7 @@ std::size_t Teacher::required_bytes(const locate::Limits& limits) noexcept {
 }
 
 Status Teacher::init(const locate::Limits& limits, std::span<std::byte> memory) noexcept {
+  if (locate::Locator::required_bytes(limits) == 0) return Status::kInvalidArgument;
   if (memory.size() < required_bytes(limits)) return Status::kOutOfMemory;
   limits_ = limits;
   memory_ = memory;
