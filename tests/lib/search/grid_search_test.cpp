@@ -226,5 +226,58 @@ TEST(GridSearch, GivesPosesThatLieOnTheSurface) {
   }
 }
 
+/// A steep plane with the edges of one part on it, exactly where the part would have them.
+MadeImages steep_ground(const model::Template& part, double slope_x, double slope_y,
+                        double angle_rad) {
+  MadeImages made(60, 60);
+  const ProjectedTemplate t =
+      project(part, part.anchors[0], slope_x, slope_y, angle_rad, 1.0, ScoreConfig{});
+  const Vec3 normal = normalized({-slope_x, -slope_y, 1.0});
+  made.for_each([&](int x, int y) {
+    const double z_mm = slope_x * (x - 30) + slope_y * (y - 30);
+    made.field.slope_x(x, y) = static_cast<float>(slope_x);
+    made.field.slope_y(x, y) = static_cast<float>(slope_y);
+    made.field.plane_mm(x, y) = static_cast<float>(z_mm);
+    made.images.height_unit(x, y) =
+        static_cast<std::int16_t>(std::floor(z_mm * kHeightUnitsPerMm + 0.5));
+    made.images.normal_x_unit(x, y) = static_cast<std::int8_t>(std::lround(normal.x * 127));
+    made.images.normal_y_unit(x, y) = static_cast<std::int8_t>(std::lround(normal.y * 127));
+    for (int i = 0; i < t.contour_count; ++i) {
+      const int apart_px =
+          std::max(std::abs(x - 30 - t.contour[i].dx), std::abs(y - 30 - t.contour[i].dy));
+      for (int k = -1; k <= 1; ++k) {  // edges go into neighbouring octants as well
+        std::uint8_t& edge = made.images.edge_cost[(t.contour[i].octant + k + 8) % 8](x, y);
+        edge = static_cast<std::uint8_t>(std::min<int>(edge, 3 * apart_px));
+      }
+    }
+  });
+  return made;
+}
+
+// Templates are turned to the nearest of a few tilts: what that may cost is little.
+TEST(GridSearch, FindsASteepPartAtItsPlaceForAlmostNothing) {
+  const auto part = plate(36.0, 24.0);
+  GridSearchConfig config;
+  config.max_tilt_rad = 1.0;
+  config.angle_step_rad = kPi / 24;
+  for (const auto& [sx, sy] : {std::pair{0.74, 0.66},
+                               {-0.66, 0.74},
+                               {0.74, -0.74},
+                               {0.0, -1.14},
+                               {1.06, 0.0},
+                               {-0.34, -0.26}}) {
+    for (const int angle_index : {0, 5, 13}) {
+      const MadeImages made = steep_ground(*part, sx, sy, kPi * angle_index / 24);
+      const Found found = run(made, *part, config);
+      ASSERT_FALSE(found.candidates.empty());
+      const Candidate& best = found.candidates[0];
+      EXPECT_NEAR(best.column, 30, 1) << sx << ' ' << sy;
+      EXPECT_NEAR(best.row, 30, 1);
+      EXPECT_NEAR(best.angle_index, angle_index, 1);
+      EXPECT_LT(best.cost_q10, 1024 / 8) << sx << ' ' << sy << ' ' << angle_index;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flatpose::search
