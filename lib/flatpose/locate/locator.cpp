@@ -226,20 +226,25 @@ class Pipeline {
   }
 
   /// A second pose in the place of a match that is no equivalent of it.
-  void note_rival(double score, const Pose& pose) noexcept {
+  void note_rival(double score, const Pose& work_T_object) noexcept {
     constexpr double kScoreGap = 0.02;
     constexpr double kAngleGap_rad = 10.0 * kRadPerDeg;
+    // The nearest match is the one whose place it takes; seen from there, turned by the symmetry as
+    // little as can be.
+    Pose match_T_rival;
+    int nearest = -1;
     for (int i = 0; i < accepted_count_; ++i) {
-      // Seen from the match, and turned by its symmetry as near to it as can be.
-      const Pose match_T_rival = model::canonical_equivalent(
-          result_.matches[i].face_T_object.inverse() * (frames_.face_T_work * pose),
+      const Pose relative = model::canonical_equivalent(
+          result_.matches[i].face_T_object.inverse() * (frames_.face_T_work * work_T_object),
           part_.symmetry);
-      const bool is_other = norm(match_T_rival.position_mm) < part_.radius_mm &&
-                            angle_between_rad(match_T_rival.rotation, Rotation{}) > kAngleGap_rad;
-      if (!is_other) continue;
-      result_.rival_score = std::max(result_.rival_score, score);
-      is_ambiguous_ |= i == 0 && score > result_.matches[0].score - kScoreGap;
+      if (nearest >= 0 && norm(relative.position_mm) >= norm(match_T_rival.position_mm)) continue;
+      match_T_rival = relative;
+      nearest = i;
     }
+    if (nearest < 0 || norm(match_T_rival.position_mm) >= part_.radius_mm) return;
+    if (angle_between_rad(match_T_rival.rotation, Rotation{}) <= kAngleGap_rad) return;
+    result_.rival_score = std::max(result_.rival_score, score);
+    is_ambiguous_ |= nearest == 0 && score > result_.matches[0].score - kScoreGap;
   }
 
   [[nodiscard]] bool is_allowed(const Pose& work_T_object) const noexcept {
