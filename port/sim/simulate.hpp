@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "flatpose/core/range_image.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "port/sim/scene.hpp"
 #include "port/sim/sensor.hpp"
 

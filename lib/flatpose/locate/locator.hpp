@@ -14,9 +14,9 @@
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/clock.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/geometry/frames.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/geometry/region.hpp"
 #include "flatpose/locate/outcome.hpp"
 #include "flatpose/model/template.hpp"

@@ -11,9 +11,9 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
 
 namespace flatpose::rectify {

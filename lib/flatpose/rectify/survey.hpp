@@ -13,9 +13,9 @@
 #include <limits>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
 
 namespace flatpose::rectify {

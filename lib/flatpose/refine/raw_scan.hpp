@@ -2,8 +2,8 @@
 // The way from a place in the height map back to the scan's own points, which the last step is
 // fitted to.
 
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
 
 namespace flatpose::refine {

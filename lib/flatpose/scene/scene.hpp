@@ -5,9 +5,9 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/geometry/frames.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/image/edge.hpp"
 #include "flatpose/rectify/height_map.hpp"
 #include "flatpose/rectify/rectify.hpp"

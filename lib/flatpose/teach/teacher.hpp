@@ -12,9 +12,9 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/geometry/frames.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/geometry/region.hpp"
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/model/template.hpp"

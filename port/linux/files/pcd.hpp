@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "flatpose/core/range_image.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "port/linux/files/scan.hpp"
 
 namespace flatpose::port {

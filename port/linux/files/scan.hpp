@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "flatpose/core/range_image.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/geometry/vec3.hpp"
 
 namespace flatpose::port {

@@ -1,6 +1,6 @@
 #include "port/linux/tool/loaded_scan.hpp"
 
-#include "flatpose/core/range_image.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/files/work_file.hpp"
 #include "port/linux/tool/command.hpp"

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/geometry/range_image.hpp"
 
 namespace flatpose::tool {
 

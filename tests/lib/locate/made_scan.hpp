@@ -15,8 +15,8 @@
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/maths.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/geometry/frames.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/image/canny.hpp"
 #include "flatpose/image/fill.hpp"
 #include "flatpose/model/template.hpp"

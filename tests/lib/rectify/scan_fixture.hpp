@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/range_image.hpp"
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
 
 namespace flatpose::rectify {
