@@ -23,6 +23,7 @@ struct Area {
   std::int32_t upper_count = 0;         ///< Edges that fall away from it ...
   std::int32_t lower_count = 0;         ///< ... and toward it.
   std::int32_t rests_on = kUnassigned;  ///< The area that most edges of its own fall to.
+  std::int32_t lies_in = kUnassigned;   ///< The area whose edges fall to it.
   bool is_part = false;
 };
 
@@ -155,6 +156,8 @@ class Partition {
       if (lower > 0) ++areas_[lower].lower_count;
       if (upper > 0 && lower != kUnassigned && areas_[upper].rests_on <= 0)
         areas_[upper].rests_on = lower;
+      if (upper > 0 && lower > 0 && areas_[lower].lies_in == kUnassigned)
+        areas_[lower].lies_in = upper;
     }
   }
 
@@ -164,7 +167,7 @@ class Partition {
     if (2 * area.missing_count > area.cell_count) return true;
     const bool lies_low =
         area.height_sum_mm / area.cell_count < background_mm_ + static_cast<double>(step_max_mm_);
-    return lies_low && area.upper_count * 6 < area.lower_count;
+    return lies_low && is_sunk(area);
   }
 
   [[nodiscard]] std::int32_t largest() const noexcept {
@@ -183,15 +186,20 @@ class Partition {
     }
   }
 
-  /// The largest and what stands on it.  Fails: kSeveralParts.
+  [[nodiscard]] static bool is_sunk(const Area& area) noexcept {
+    return area.upper_count * 6 < area.lower_count;
+  }
+
+  /// The largest, what stands on it and what is sunk into it.  Fails: kSeveralParts.
   Status take_largest() noexcept {
     const std::int32_t part = largest();
     areas_[part].is_part = true;
     for (std::int32_t i = 1; i <= area_count_; ++i) {
-      if (i == part || is_pit(areas_[i]) || areas_[i].cell_count < kAreaCellsMin) continue;
-      areas_[i].is_part = areas_[i].rests_on == part;
+      Area& area = areas_[i];
+      if (i == part || is_pit(area) || area.cell_count < kAreaCellsMin) continue;
+      area.is_part = area.rests_on == part || (area.lies_in == part && is_sunk(area));
       const bool is_rival =
-          areas_[i].rests_on <= 0 && 2 * areas_[i].cell_count > areas_[part].cell_count;
+          !area.is_part && area.rests_on <= 0 && 2 * area.cell_count > areas_[part].cell_count;
       if (is_rival) return Status::kSeveralParts;
     }
     return Status::kOk;

@@ -136,6 +136,7 @@ TEST(PartMask, ARecessBelongsToThePart) {
     if (in_hole(x, y)) return 5.0;
     return plate(x, y) ? 8.0 : 0.0;
   };
+  expect_mask(masked(scene), plate, in_hole);
   expect_mask(masked(scene, box(30, 25, 120, 95)), plate, in_hole);
 }
 
