@@ -1,6 +1,7 @@
 #include "flatpose/teach/surface_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flatpose/refine/levenberg_marquardt.hpp"
@@ -61,29 +62,51 @@ class PlaneProblem {
   refine::RobustLoss loss_;
 };
 
+// The plane at the densest offset, by least squares over what lies within the reach of it.
+Plane settled(std::span<const SurfaceSample> samples, Plane plane, double reach_mm,
+              const Vec3& middle_mm, std::span<double> scratch) noexcept {
+  plane.offset_mm = densest_offset(samples, plane, reach_mm, scratch);
+  const refine::Vector<3> start(plane.z_at(middle_mm.x, middle_mm.y), plane.slope_x, plane.slope_y);
+  const auto fit = refine::minimize<3>(PlaneProblem(samples, reach_mm, middle_mm), start);
+  plane.slope_x = fit.x[1];
+  plane.slope_y = fit.x[2];
+  plane.offset_mm = fit.x[0] - fit.x[1] * middle_mm.x - fit.x[2] * middle_mm.y;
+  return plane;
+}
+
+std::ptrdiff_t count_on(std::span<const SurfaceSample> samples, const Plane& plane,
+                        double tolerance_mm) noexcept {
+  return std::count_if(samples.begin(), samples.end(), [&](const SurfaceSample& s) {
+    return std::fabs(s.z_mm - plane.z_at(s.x_mm, s.y_mm)) <= tolerance_mm;
+  });
+}
+
 }  // namespace
 
 Plane dominant_plane(std::span<const SurfaceSample> samples, double tolerance_mm,
                      std::span<double> scratch) noexcept {
-  Plane plane;
-  plane.slope_x = median_of(samples, scratch, [](const SurfaceSample& s) { return s.slope_x; });
-  plane.slope_y = median_of(samples, scratch, [](const SurfaceSample& s) { return s.slope_y; });
+  Plane start;
+  start.slope_x = median_of(samples, scratch, [](const SurfaceSample& s) { return s.slope_x; });
+  start.slope_y = median_of(samples, scratch, [](const SurfaceSample& s) { return s.slope_y; });
   Vec3 middle_mm;
   middle_mm.x = median_of(samples, scratch, [](const SurfaceSample& s) { return s.x_mm; });
   middle_mm.y = median_of(samples, scratch, [](const SurfaceSample& s) { return s.y_mm; });
   // The slopes' error tilts the far ends apart: a wide window finds the plane, narrower ones settle
-  // it.
-  for (const double widening : {6.0, 3.0, 2.0}) {
-    const double reach_mm = widening * tolerance_mm;
-    plane.offset_mm = densest_offset(samples, plane, reach_mm, scratch);
-    const refine::Vector<3> start(plane.z_at(middle_mm.x, middle_mm.y), plane.slope_x,
-                                  plane.slope_y);
-    const auto fit = refine::minimize<3>(PlaneProblem(samples, reach_mm, middle_mm), start);
-    plane.slope_x = fit.x[1];
-    plane.slope_y = fit.x[2];
-    plane.offset_mm = fit.x[0] - fit.x[1] * middle_mm.x - fit.x[2] * middle_mm.y;
+  // it. But a wide one may lay a plane across two levels, which no narrower one undoes: so from
+  // every width, and what most samples lie on is the plane.
+  constexpr std::array<double, 3> kWidenings{6.0, 3.0, 2.0};
+  Plane best;
+  std::ptrdiff_t best_count = -1;
+  for (std::size_t first = 0; first < kWidenings.size(); ++first) {
+    Plane plane = start;
+    for (std::size_t k = first; k < kWidenings.size(); ++k)
+      plane = settled(samples, plane, kWidenings[k] * tolerance_mm, middle_mm, scratch);
+    const std::ptrdiff_t count = count_on(samples, plane, tolerance_mm);
+    if (count <= best_count) continue;
+    best = plane;
+    best_count = count;
   }
-  return plane;
+  return best;
 }
 
 }  // namespace flatpose::teach
