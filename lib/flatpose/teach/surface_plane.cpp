@@ -74,11 +74,17 @@ Plane settled(std::span<const SurfaceSample> samples, Plane plane, double reach_
   return plane;
 }
 
-std::ptrdiff_t count_on(std::span<const SurfaceSample> samples, const Plane& plane,
-                        double tolerance_mm) noexcept {
-  return std::count_if(samples.begin(), samples.end(), [&](const SurfaceSample& s) {
-    return std::fabs(s.z_mm - plane.z_at(s.x_mm, s.y_mm)) <= tolerance_mm;
-  });
+// How much lies on the plane, what lies on it closely counting most: an oblique plane across two
+// levels comes near to many samples, and to few of them closely.
+double support_of(std::span<const SurfaceSample> samples, const Plane& plane,
+                  double tolerance_mm) noexcept {
+  double sum = 0.0;
+  for (const SurfaceSample& s : samples) {
+    const double share = (s.z_mm - plane.z_at(s.x_mm, s.y_mm)) / tolerance_mm;
+    const double u = std::max(0.0, 1.0 - share * share);
+    sum += u * u;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -96,15 +102,15 @@ Plane dominant_plane(std::span<const SurfaceSample> samples, double tolerance_mm
   // every width, and what most samples lie on is the plane.
   constexpr std::array<double, 3> kWidenings{6.0, 3.0, 2.0};
   Plane best;
-  std::ptrdiff_t best_count = -1;
+  double best_support = -1.0;
   for (std::size_t first = 0; first < kWidenings.size(); ++first) {
     Plane plane = start;
     for (std::size_t k = first; k < kWidenings.size(); ++k)
       plane = settled(samples, plane, kWidenings[k] * tolerance_mm, middle_mm, scratch);
-    const std::ptrdiff_t count = count_on(samples, plane, tolerance_mm);
-    if (count <= best_count) continue;
+    const double support = support_of(samples, plane, tolerance_mm);
+    if (!(support > best_support)) continue;
     best = plane;
-    best_count = count;
+    best_support = support;
   }
   return best;
 }
