@@ -72,6 +72,30 @@ TEST(Verify, WhatIsHiddenSaysNothing) {
       scan_of([](double x, double y) { return x > 75.0 ? 40.0 : lone_block(x, y); }), kTruth));
 }
 
+/// The part along the grid, from x = 50 to 100, with something else at its right end.
+Verification with_neighbour(double from_mm, double to_mm) {
+  const Pose pose = test::pose_at(75.0, 60.0, test::kPartTop_mm);
+  return verified(scan_of([&](double x, double y) {
+                    if (x > from_mm && x < to_mm) return 40.0;
+                    return test::bin_height({{pose}}, x, y);
+                  }),
+                  pose);
+}
+
+TEST(Verify, AContourAgainstAWallSaysNothing) {
+  const Verification free = with_neighbour(0.0, 0.0);
+  const Verification walled = with_neighbour(100.0, 150.0);
+  EXPECT_LT(walled.contour.visible_count, free.contour.visible_count);
+  EXPECT_GT(walled.score, 0.97);
+}
+
+TEST(Verify, AContourUnderABarSaysNothing) {
+  const Verification free = with_neighbour(0.0, 0.0);
+  const Verification barred = with_neighbour(92.5, 100.2);
+  EXPECT_LT(barred.contour.visible_count, free.contour.visible_count);
+  EXPECT_GT(barred.score, 0.97);
+}
+
 TEST(Verify, WhatIsMissingSaysNothing) {
   expect_half_seen(verified(
       scan_of([](double x, double y) { return x > 75.0 ? test::kLost : lone_block(x, y); }),

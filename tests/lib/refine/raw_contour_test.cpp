@@ -128,6 +128,22 @@ TEST(RawContour, IsNotFoundWhereSomethingHigherHidesIt) {
   }
 }
 
+TEST(RawContour, AnEdgeThatOvershootsIsFoundAndOneUnderABarIsNot) {
+  constexpr double kPitch_mm = 0.25;
+  for (const double angle_rad : kFourWays_rad) {
+    for (const double above_mm : {0.7, 2.6}) {
+      const StraightEdge edge{angle_rad, 0.2};
+      const MadeScan scan(241, 241, kPitch_mm, [&](double x, double y) {
+        const double u = edge.across(x, y);
+        if (u < 0.0) return kTop_mm;
+        return u < above_mm ? kTop_mm + 4.0 : 0.0;
+      });
+      const Crossing crossing = measured(scan, expected_point(angle_rad));
+      EXPECT_EQ(crossing.found, above_mm < 1.0) << angle_rad << " " << above_mm;
+    }
+  }
+}
+
 TEST(RawContour, IsFoundWhereAShadowFollows) {
   for (const double angle_rad : kFourWays_rad) {
     const MadeScan scan = StraightEdge{angle_rad, 0.2, test::kLost}.scan();

@@ -52,6 +52,20 @@ TEST(DominantPlane, FollowsTheLevelThatMostShare) {
   }
 }
 
+TEST(DominantPlane, IsNotDrawnToALevelClosely) {
+  // A level that only a wide window takes in.
+  const double tolerance_mm = 0.3;
+  for (const double above_mm : {0.9, 1.2, 1.5}) {
+    std::vector<SurfaceSample> samples;
+    for (int y = 0; y < 30; ++y)
+      for (int x = 0; x < 50; ++x)
+        samples.push_back({1.0 * x, 1.0 * y, x < 30 ? 5.0 : 5.0 + above_mm, 0, 0});
+    const Plane plane = fitted(samples, tolerance_mm);
+    EXPECT_NEAR(plane.z_at(15.0, 15.0), 5.0, 0.02) << above_mm;
+    EXPECT_NEAR(plane.slope_x, 0.0, 0.002) << above_mm;
+  }
+}
+
 TEST(DominantPlane, TakesThreeSamples) {
   const Plane plane = fitted({{0, 0, 1, 0, 0}, {10, 0, 1, 0, 0}, {0, 10, 1, 0, 0}}, 0.1);
   EXPECT_NEAR(plane.z_at(3.0, 3.0), 1.0, 1e-9);

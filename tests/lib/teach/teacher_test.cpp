@@ -155,6 +155,18 @@ TEST(Teacher, FramePointsToASensorBelowToo) {
   EXPECT_GT(q.rotation.m[0], 0.9999);
 }
 
+TEST(Teacher, ALeaningPartIsFlatInItsOwnFrame) {
+  const Pose leaning{rotation_from_vector({0.1, 0.25, 0.0}) * rotation_about_z(0.3),
+                     {75.0, 60.0, 30.0}};
+  const MadeScan scan = test::bin_scan({{leaning}}, 0.02);
+  const Taught t = test::taught({{scan.view(), frames_of_scan(true)}});
+  ASSERT_EQ(t.status, Status::kOk) << to_string(t.status);
+  const Vec3 z = t.part.scan_T_object.rotation.column(2);
+  EXPECT_LT(arc_cosine(dot(z, leaning.rotation.column(2))) * kDegPerRad, 0.1);
+  for (const model::SurfacePoint& p : t.part.surface_points()) EXPECT_NEAR(p.z_mm, 0.0F, 0.1F);
+  for (const model::ContourPoint& p : t.part.contour_points()) EXPECT_NEAR(p.z_mm, 0.0F, 0.25F);
+}
+
 TEST(Teacher, OriginAndXAxisAreWhereTheyAreGiven) {
   const auto scan = single("flange", test::clean_sensor(), 3, 0.3);
   TeachConfig config;
