@@ -137,8 +137,11 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   for (const model::ContourPoint& p : part.contour_points()) {
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
-    // A side wall that leans toward the sensor draws the fall out over its own width.
+    // A side wall that leans toward the sensor draws the fall out over its own width, and where the
+    // teach scan saw a ramp the place is as uncertain as that was.
     VerifyConfig leaning = config;
+    leaning.edge_tolerance_px +=
+        std::max(0.0, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
     leaning.edge_tolerance_px +=
         kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
     const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, leaning);

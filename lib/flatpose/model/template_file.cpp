@@ -239,6 +239,8 @@ Status read_template(std::span<const std::byte> bytes, Template& part) noexcept 
   if (header.failed()) return Status::kTruncated;
   if (version != kTemplateFileVersion) return Status::kBadVersion;
   if (bytes.size() - kHeaderBytes < payload_bytes) return Status::kTruncated;
+  if (bytes.size() - kHeaderBytes > payload_bytes)
+    return Status::kBadChecksum;  // more than was written
   const std::span<const std::byte> payload = bytes.subspan(kHeaderBytes, payload_bytes);
   Fnv1a64 found;
   found.add(payload);

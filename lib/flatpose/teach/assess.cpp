@@ -9,12 +9,12 @@
 namespace flatpose::teach {
 namespace {
 
-// Bounds of a part's own threshold: a place where a third of what should be seen is not is no part,
-// whatever the teach scan held; and a part with a tenth of it spoilt still is one.
-constexpr double kThresholdMin = 0.65;
+// Bounds of a part's own threshold: a place where three tenths of what should be seen are not is no
+// part, whatever the teach scan held; and a part with a tenth of it spoilt still is one.
+constexpr double kThresholdMin = 0.70;
 constexpr double kThresholdMax = 0.88;
 // Scores of like instances differ by less than this; what resembles the part only is farther off.
-constexpr double kScoreGap = 0.13;
+constexpr double kScoreGap = 0.11;
 
 // The same place, whatever the turn: judged at the contour's middle, which a turn of a nearly
 // symmetric part leaves.
@@ -64,7 +64,7 @@ bool holds_symmetry(const model::Template& part) noexcept {
   const double turn_rad =
       part.symmetry.order == model::kFullSymmetry ? kAnyTurn_rad : 2.0 * kPi / part.symmetry.order;
   return overlap_after_turn(part, part.symmetry.center_x_mm, part.symmetry.center_y_mm, turn_rad,
-                            part.cell_mm) >= kOverlapMin;
+                            3.0 * part.cell_mm) >= kOverlapMin;
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ void set_threshold(const locate::LocateResult& everything, const Pose& face_T_ob
   }
   part.score_threshold =
       std::clamp(0.5 * (lowest_like + part.rival_score), kThresholdMin, kThresholdMax);
-  constexpr double kMarginThin = 0.1;
+  constexpr double kMarginThin = 0.2;
   flag(part, model::kWeakMarginThin, lowest_like - part.rival_score < kMarginThin);
 }
 

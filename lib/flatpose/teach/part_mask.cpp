@@ -12,12 +12,14 @@ constexpr std::int32_t kBarrier = -1;
 constexpr std::int32_t kBackground = -2;
 constexpr std::int32_t kOutside = -3;
 // Areas beyond this many are specks: they are counted as background.
-constexpr int kAreaCountMax = 1024;
+constexpr int kAreaCountMax = 16384;
 constexpr std::int32_t kAreaCellsMin = 12;
 constexpr double kNoiseFactor = 6.0;
+constexpr int kBarrierReach_px = 2;  // an edge's cell and the one beside it
 
 struct Area {
   std::int32_t cell_count = 0;
+  std::int32_t inside_count = 0;  ///< Cells that lie in the region.
   std::int32_t missing_count = 0;
   double height_sum_mm = 0.0;
   std::int32_t upper_count = 0;         ///< Edges that fall away from it ...
@@ -38,6 +40,7 @@ class Partition {
     stack_ = arena.take<std::int32_t>(static_cast<std::size_t>(width_px_) *
                                       static_cast<std::size_t>(height_px_));
     areas_ = arena.take<Area>(kAreaCountMax + 1);
+    is_inside_ = arena.take_image<std::uint8_t>(width_px_, height_px_);
   }
 
   /// Draws the barriers, floods the background, labels what is shut in and writes what of it is the
@@ -49,20 +52,20 @@ class Partition {
     region_cell_count_ = 0;
     background_mm_ = -std::numeric_limits<double>::infinity();
     draw(frames, region);
-    flood_background();
-    const std::int32_t shut_in_count = label_areas();
-    // A part fills a good share of the region that is drawn around it.
-    constexpr int kRegionSharePerCell = 8;
-    const bool has_region = region.kind != Region::Kind::kAll;
-    if (has_region && shut_in_count * kRegionSharePerCell < region_cell_count_) {
-      take_region_whole();
-    } else {
+    if (region.kind == Region::Kind::kAll) {
+      flood_background();
+      label_areas();
       vote();
       if (largest() == 0) return Status::kNoPart;
-      if (has_region) {
-        take_all();
-      } else if (const Status s = take_largest(); s != Status::kOk) {
-        return s;
+      if (const Status s = take_largest(); s != Status::kOk) return s;
+    } else {
+      label_areas();
+      const bool is_one_surface = send_back_what_lies_outside();
+      vote();
+      take_all();
+      if (largest() == 0) {
+        if (!is_one_surface) return Status::kNoPart;
+        take_region_whole();
       }
     }
     write(mask);
@@ -75,8 +78,9 @@ class Partition {
       for (int x = 0; x < width_px_; ++x) {
         const Vec3 p_work{scene_.map.grid.x_of(x), scene_.map.grid.y_of(y), 0.0};
         const Vec3 p_face = frames.face_T_work * p_work;
-        label_(x, y) = region.contains(p_face.x, p_face.y) ? kUnassigned : kOutside;
-        if (label_(x, y) == kUnassigned) ++region_cell_count_;
+        is_inside_(x, y) = region.contains(p_face.x, p_face.y) ? 1 : 0;
+        label_(x, y) = kUnassigned;
+        region_cell_count_ += is_inside_(x, y);
       }
     }
     for (const image::EdgePoint& e : scene_.edges) {
@@ -94,37 +98,61 @@ class Partition {
   void flood_background() noexcept {
     for (int y = 0; y < height_px_; ++y) {
       for (int x = 0; x < width_px_; ++x) {
-        if (label_(x, y) == kUnassigned && touches_outside(x, y)) (void)flood(x, y, kBackground);
+        if (label_(x, y) == kUnassigned && is_on_border(x, y)) (void)flood(x, y, kBackground);
       }
     }
   }
 
-  std::int32_t label_areas() noexcept {
+  void label_areas() noexcept {
     std::fill(areas_.begin(), areas_.end(), Area{});
-    std::int32_t shut_in_count = 0;
     for (int y = 0; y < height_px_; ++y) {
       for (int x = 0; x < width_px_; ++x) {
         if (label_(x, y) != kUnassigned) continue;
         const std::int32_t label = area_count_ < kAreaCountMax ? ++area_count_ : kBackground;
         const std::int32_t cell_count = flood(x, y, label);
-        if (label == kBackground) continue;
-        areas_[label].cell_count = cell_count;
-        shut_in_count += cell_count;
+        if (label != kBackground) areas_[label].cell_count = cell_count;
       }
     }
-    return shut_in_count;
   }
 
-  /// Nothing is shut in: the region itself is the part.
+  /// What lies mostly outside of the region is background; what lies mostly in it is wanted whole,
+  /// also where a region drawn too tightly cuts it. Returns whether one surface that goes on
+  /// outside fills most of the region.
+  bool send_back_what_lies_outside() noexcept {
+    constexpr double kInsideShareMin = 0.6;
+    constexpr double kFilledShare = 0.6;
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        if (label_(x, y) > 0) areas_[label_(x, y)].inside_count += is_inside_(x, y);
+      }
+    }
+    bool is_one_surface = false;
+    for (int y = 0; y < height_px_; ++y) {
+      for (int x = 0; x < width_px_; ++x) {
+        std::int32_t& label = label_(x, y);
+        if (label <= 0) continue;
+        const Area& area = areas_[label];
+        if (area.inside_count >= kInsideShareMin * area.cell_count) continue;
+        is_one_surface |= area.inside_count > kFilledShare * region_cell_count_;
+        label = kBackground;
+      }
+    }
+    for (std::int32_t i = 1; i <= area_count_; ++i) {
+      if (areas_[i].inside_count < kInsideShareMin * areas_[i].cell_count) areas_[i] = Area{};
+    }
+    return is_one_surface;
+  }
+
+  /// Nothing stands in the region, which lies on a larger surface: the region itself is the part.
   void take_region_whole() noexcept {
     area_count_ = 1;
     std::fill(areas_.begin(), areas_.end(), Area{});
     for (int y = 0; y < height_px_; ++y) {
       for (int x = 0; x < width_px_; ++x) {
         std::int32_t& label = label_(x, y);
-        if (label == kOutside || label == kBarrier) continue;
-        label = 1;
-        ++areas_[1].cell_count;
+        if (label == kBarrier) continue;
+        label = is_inside_(x, y) != 0 ? 1 : kBackground;
+        areas_[1].cell_count += is_inside_(x, y);
       }
     }
     areas_[1].is_part = true;
@@ -141,7 +169,7 @@ class Partition {
         const bool missing = scene_.missing(x, y) != 0;
         if (label > 0 && missing) ++areas_[label].missing_count;
         if (label > 0) areas_[label].height_sum_mm += static_cast<double>(scene_.filled_mm(x, y));
-        if (label != kBackground || missing) continue;
+        if (label != kBackground || missing || is_inside_(x, y) == 0) continue;
         background_sum_mm += static_cast<double>(scene_.filled_mm(x, y));
         background_count += 1.0;
       }
@@ -164,7 +192,7 @@ class Partition {
   /// Lower than all around it and no higher than the background, which shows through; or hardly
   /// seen at all.
   [[nodiscard]] bool is_pit(const Area& area) const noexcept {
-    if (2 * area.missing_count > area.cell_count) return true;
+    if (area.cell_count == 0 || 2 * area.missing_count > area.cell_count) return true;
     const bool lies_low =
         area.height_sum_mm / area.cell_count < background_mm_ + static_cast<double>(step_max_mm_);
     return lies_low && is_sunk(area);
@@ -192,14 +220,15 @@ class Partition {
 
   /// The largest, what stands on it and what is sunk into it.  Fails: kSeveralParts.
   Status take_largest() noexcept {
+    constexpr int kRivalShare = 5;  // a fifth of the largest, standing apart, may be meant as well
     const std::int32_t part = largest();
     areas_[part].is_part = true;
     for (std::int32_t i = 1; i <= area_count_; ++i) {
       Area& area = areas_[i];
       if (i == part || is_pit(area) || area.cell_count < kAreaCellsMin) continue;
       area.is_part = area.rests_on == part || (area.lies_in == part && is_sunk(area));
-      const bool is_rival =
-          !area.is_part && area.rests_on <= 0 && 2 * area.cell_count > areas_[part].cell_count;
+      const bool is_rival = !area.is_part && area.rests_on <= 0 &&
+                            kRivalShare * area.cell_count > areas_[part].cell_count;
       if (is_rival) return Status::kSeveralParts;
     }
     return Status::kOk;
@@ -215,6 +244,7 @@ class Partition {
         if (is_part) ++mask.cell_count;
       }
     }
+    for (int reach_px = 0; reach_px < kBarrierReach_px; ++reach_px) grow(mask);
     std::int32_t falls_away = 0;
     std::int32_t falls_toward = 0;
     for (const image::EdgePoint& e : scene_.edges) {
@@ -228,14 +258,37 @@ class Partition {
     mask.lies_below = falls_toward > falls_away;
   }
 
+  /// Adds the barrier cells beside the part that lie at its height: they are its surface up to the
+  /// contour.
+  void grow(PartMask& mask) noexcept {
+    constexpr std::uint8_t kAdded = 2;
+    for (int y = 1; y < height_px_ - 1; ++y) {
+      for (int x = 1; x < width_px_ - 1; ++x) {
+        if (label_(x, y) != kBarrier || mask.is_part(x, y) != 0) continue;
+        const auto continues = [&](int px, int py) {
+          return mask.is_part(px, py) == 1 &&
+                 std::fabs(scene_.filled_mm(px, py) - scene_.filled_mm(x, y)) <= step_max_mm_;
+        };
+        const bool is_added = continues(x - 1, y) || continues(x + 1, y) || continues(x, y - 1) ||
+                              continues(x, y + 1);
+        if (is_added) mask.is_part(x, y) = kAdded;
+      }
+    }
+    for (int y = 1; y < height_px_ - 1; ++y) {
+      for (int x = 1; x < width_px_ - 1; ++x) {
+        if (mask.is_part(x, y) != kAdded) continue;
+        mask.is_part(x, y) = 1;
+        ++mask.cell_count;
+      }
+    }
+  }
+
   [[nodiscard]] bool is_part_area(std::int32_t label) const noexcept {
     return label > 0 && areas_[label].is_part;
   }
 
-  [[nodiscard]] bool touches_outside(int x, int y) const noexcept {
-    if (x == 0 || y == 0 || x == width_px_ - 1 || y == height_px_ - 1) return true;
-    return label_(x - 1, y) == kOutside || label_(x + 1, y) == kOutside ||
-           label_(x, y - 1) == kOutside || label_(x, y + 1) == kOutside;
+  [[nodiscard]] bool is_on_border(int x, int y) const noexcept {
+    return x == 0 || y == 0 || x == width_px_ - 1 || y == height_px_ - 1;
   }
 
   // Four-connected, with a stack of our own; each cell is pushed once.
@@ -285,6 +338,7 @@ class Partition {
   ImageView<std::int32_t> label_;
   std::span<std::int32_t> stack_;
   std::span<Area> areas_;
+  ImageView<std::uint8_t> is_inside_;
   std::int32_t area_count_ = 0;
   double background_mm_ = -std::numeric_limits<double>::infinity();
   std::int32_t region_cell_count_ = 0;

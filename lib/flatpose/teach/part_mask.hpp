@@ -1,9 +1,10 @@
 #pragma once
 // Which cells of a teach scan are the part's surface.
 //
-// Contours are barriers. Everything that can be reached from the border of the region without
-// crossing one is background; what stays shut in is the part, but for pits: holes through which
-// something lower shows, which lie lower than all around them.
+// Contours are barriers that divide the scan into areas. With a region, the areas that lie mostly
+// in it are the part, whole, and all others background; without one, what cannot be reached from
+// the border of the scan. Pits do not count: holes through which something lower shows, which lie
+// lower than all around them.
 
 #include <cstdint>
 #include <span>

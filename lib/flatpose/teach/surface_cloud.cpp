@@ -64,9 +64,8 @@ Status sample_surface(const scene::Scene& scene, const PartMask& mask, double no
   // The widest stride that still gives enough samples, so that they lie evenly.
   const double per_sample = std::sqrt(static_cast<double>(mask.cell_count) / kSampleCountMax);
   const int stride_px = std::max(1, static_cast<int>(std::ceil(per_sample)));
-  // The fit's window may touch the barrier beside an edge, not the edge; what it must not touch
-  // shows in the rms.
-  constexpr int kClearanceMin_third_px = 3 * kFitRadius_px;
+  constexpr int kClearanceMin_third_px =
+      3 * (kFitRadius_px + 1);  // the fit's window touches no edge
   const double rms_max_mm = 3.0 * noise_mm + 0.05 * grid.cell_mm;
   out.stride_mm = stride_px * grid.cell_mm;
   out.count = 0;

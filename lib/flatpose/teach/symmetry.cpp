@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flatpose/core/maths.hpp"
 
@@ -55,14 +56,16 @@ Turned turned(const model::ContourPoint& p, const Vec3& c, const SinCos& turn) n
 
 // The contour point nearest to a turned one among those that face the same way; null when none
 // does.
-const model::ContourPoint* nearest(const model::Template& part, const Turned& q) noexcept {
+const model::ContourPoint* nearest(
+    const model::Template& part, const Turned& q,
+    double reach_mm = std::numeric_limits<double>::infinity()) noexcept {
   constexpr double kCosineMin = 0.8;
   const model::ContourPoint* best = nullptr;
-  double best2 = 0.0;
+  double best2 = reach_mm * reach_mm;
   for (const model::ContourPoint& p : part.contour_points()) {
     if (p.nx * q.nx + p.ny * q.ny < kCosineMin) continue;
     const double d2 = (p.x_mm - q.x) * (p.x_mm - q.x) + (p.y_mm - q.y) * (p.y_mm - q.y);
-    if (best != nullptr && d2 >= best2) continue;
+    if (d2 >= best2) continue;
     best = &p;
     best2 = d2;
   }
@@ -72,14 +75,19 @@ const model::ContourPoint* nearest(const model::Template& part, const Turned& q)
 // A turn by 360/N lays the contour onto itself but for a shift t = (1 - R)(c_true - c): solved for
 // c, again and again.
 Vec3 center_of_turn(const model::Template& part, int order) noexcept {
-  constexpr int kRoundCount = 12;
+  constexpr int kRoundCount = 16;
+  constexpr double kReachStart = 32.0;  // cells
+  constexpr double kReachMin = 3.0;
   const SinCos turn = sin_cos(2.0 * kPi / order);
   Vec3 c = middle_of(part);
   for (int round = 0; round < kRoundCount; ++round) {
+    // What has no counterpart (a hole seen in part) must not take another's: the reach shrinks as
+    // the centre settles.
+    const double reach_mm = std::max(kReachMin, kReachStart / (1 << round)) * part.cell_mm;
     double a00 = 0, a01 = 0, a11 = 0, b0 = 0, b1 = 0;
     for (const model::ContourPoint& p : part.contour_points()) {
       const Turned q = turned(p, c, turn);
-      const model::ContourPoint* match = nearest(part, q);
+      const model::ContourPoint* match = nearest(part, q, reach_mm);
       if (match == nullptr) continue;
       const double nx = match->nx;
       const double ny = match->ny;
