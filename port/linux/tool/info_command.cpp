@@ -48,8 +48,8 @@ std::string template_text(const std::string& path, const model::Template& part) 
   text +=
       formatted("  %d contour and %d surface points, %d anchors, symmetry %s\n", part.contour_count,
                 part.surface_count, part.anchor_count, symmetry_text(part).c_str());
-  text += formatted("  %.0f mm2, radius %.1f mm, step %.2f mm, cell %.3f mm\n", part.area_mm2,
-                    part.radius_mm, part.step_mm, part.cell_mm);
+  text += formatted("  %.0f mm2, reach %.1f mm from its first anchor, step %.2f mm, cell %.3f mm\n",
+                    part.area_mm2, part.radius_mm, part.step_mm, part.cell_mm);
   text += formatted(
       "  taught at %.3f %.3f %.3f mm (frame %s, up %s), points every %.3f mm, "
       "noise %.3f mm\n",

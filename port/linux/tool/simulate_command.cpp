@@ -68,9 +68,11 @@ sim::SimulatedScan simulate(const Options& options) {
 ExitCode run(const Options& options, Report& report) {
   check_outputs({}, std::array{options.scan_path, options.truth_path});
   const sim::SimulatedScan scan = simulate(options);
+  FirstOutput output(options.scan_path);
+  port::write_pcd(options.scan_path, scan.view(), scan.viewpoint_mm);
   if (!options.truth_path.empty())
     port::write_file_atomically(options.truth_path, truth_text(scan));
-  port::write_pcd(options.scan_path, scan.view(), scan.viewpoint_mm);
+  output.keep();
   report.text = formatted("simulated scene '%s', seed %llu: %d x %d points, %zu parts\n",
                           scan.scene.c_str(), static_cast<unsigned long long>(scan.seed),
                           scan.width_px, scan.height_px, scan.instances.size());

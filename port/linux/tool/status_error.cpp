@@ -58,15 +58,34 @@ Words words_for_scan(Status status, Doing doing) {
   }
 }
 
+// Nothing is searched for where the part was painted: the paint is what can be wrong.
+Words words_for_mask(Status status) {
+  switch (status) {
+    case Status::kNoPart:
+      return {"too little of its blue lies on valid points of the scan; no part to teach",
+              "paint the whole upper side of the part blue"};
+    case Status::kNoContour:
+      return {"too few edges of the scan lie under its red; no usable contour",
+              "paint the part's edges red, where the height falls"};
+    case Status::kTooFewPoints:
+      return {"too few valid points of the scan lie under it", "scan the part again"};
+    default: return words_for_scan(status, Doing::kTeach);
+  }
+}
+
+Words words_for(Status status, Doing doing) {
+  switch (doing) {
+    case Doing::kReadTemplate: return words_for_template(status);
+    case Doing::kWriteTemplate: return {nullptr, nullptr};
+    case Doing::kTeachByMask: return words_for_mask(status);
+    default: return words_for_scan(status, doing);
+  }
+}
+
 }  // namespace
 
 void fail(Status status, Doing doing, const std::string& subject) {
-  if (doing == Doing::kReadTemplate) {
-    const Words words = words_for_template(status);
-    throw port::InputError(subject, words.why, words.remedy);
-  }
-  const Words words =
-      doing == Doing::kWriteTemplate ? Words{nullptr, nullptr} : words_for_scan(status, doing);
+  const Words words = words_for(status, doing);
   if (words.why == nullptr) throw std::logic_error(subject + ": " + to_string(status));
   throw port::InputError(subject, words.why, words.remedy);
 }

@@ -7,7 +7,7 @@
 
 namespace flatpose::tool {
 
-enum class Doing { kTeach, kLocate, kSurvey, kReadTemplate, kWriteTemplate };
+enum class Doing { kTeach, kTeachByMask, kLocate, kSurvey, kReadTemplate, kWriteTemplate };
 
 /// Throws what `status`, which is not kOk, says about `subject` (a file or option): InputError for
 /// what the user can mend, std::logic_error for what only we can.

@@ -73,8 +73,18 @@ std::array<char, model::kNameBytesMax + 1> chosen_name(const Options& options) {
 struct Lesson {
   std::vector<LoadedScan> scans;
   port::LabelMask mask;
+  std::string mask_path;
   teach::TeachConfig config;
 };
+
+[[noreturn]] void fail_lesson(Status status, const Lesson& lesson) {
+  // These the paint decides, where there is one; all else is the scan's.
+  const bool is_of_outline = status == Status::kNoPart || status == Status::kNoContour ||
+                             status == Status::kTooFewPoints;
+  if (is_of_outline && !lesson.mask_path.empty())
+    fail(status, Doing::kTeachByMask, lesson.mask_path);
+  fail(status, Doing::kTeach, lesson.scans.front().path);
+}
 
 Lesson load(const Options& options) {
   Lesson lesson;
@@ -88,6 +98,7 @@ Lesson load(const Options& options) {
   lesson.config.up = static_cast<std::int8_t>(first.up_sign());
   lesson.config.frame = first.frame;
   if (options.mask_path.empty()) return lesson;
+  lesson.mask_path = options.mask_path;
   lesson.mask = port::read_mask_png(options.mask_path, first.scan.width_px, first.scan.height_px,
                                     options.reading.limits);
   lesson.config.labels = lesson.mask.view();
@@ -108,7 +119,7 @@ void learn(const Lesson& lesson, model::Template& part, teach::TeachReport& foun
   teach::Teacher teacher;
   Status status = teacher.init(limits, memory.span());
   if (status == Status::kOk) status = teacher.teach(scans, lesson.config, part, found);
-  if (status != Status::kOk) fail(status, Doing::kTeach, lesson.scans.front().path);
+  if (status != Status::kOk) fail_lesson(status, lesson);
 }
 
 std::string json_report(const model::Template& part, const LoadedScan& first,
@@ -133,9 +144,9 @@ std::string text_report(const model::Template& part, const LoadedScan& first,
                 port::to_string(first.scan.up), first.scan.up_reason.c_str());
   text += formatted("  threshold %.3f; scores %.3f itself, %.3f the best wrong place\n",
                     part.score_threshold, part.self_score, part.rival_score);
-  text += formatted("  %d contour and %d surface points, %.0f mm2, radius %.1f mm, step %.2f mm\n",
-                    part.contour_count, part.surface_count, part.area_mm2, part.radius_mm,
-                    part.step_mm);
+  text += formatted("  %d contour and %d surface points, %.0f mm2, step %.2f mm\n",
+                    part.contour_count, part.surface_count, part.area_mm2, part.step_mm);
+  text += formatted("  reach %.1f mm from its first anchor\n", part.radius_mm);
   text += formatted("  cell %.3f mm, points every %.3f mm, noise %.3f mm\n", part.cell_mm,
                     part.pitch_mm, part.noise_mm);
   text += formatted("  taught at %.3f %.3f %.3f mm\n", p.x, p.y, p.z);
@@ -171,10 +182,11 @@ ExitCode run(const Options& options, Report& report) {
     report.warnings.push_back(
         formatted("%d of %zu scans were left out: the part was not found in them", left_out,
                   lesson.scans.size()));
-  const std::vector<std::byte> bytes = template_bytes(*part);
+  FirstOutput output(options.part_path);
+  port::write_file_atomically(options.part_path, template_bytes(*part));
   if (!options.preview_path.empty())
     port::write_file_atomically(options.preview_path, preview(*part, first));
-  port::write_file_atomically(options.part_path, bytes);
+  output.keep();
   report.text =
       (options.json ? json_report : text_report)(*part, first, found, lesson.scans.size());
   return ExitCode::kDone;
@@ -191,7 +203,8 @@ Action add_teach(CLI::App& app) {
   app.add_option("--name", o.name, "of the part (the output's)")->type_name("N");
   add_region(app, "where the part lies in the first scan", o.config.region);
   app.add_option("--mask", o.mask_path, "labelled picture: red edges, blue surface, green origin")
-      ->type_name("MASK.png");
+      ->type_name("MASK.png")
+      ->excludes("--region");
   add_text(app, "--origin", "X,Y", "of the object frame (centroid of the surface)",
            [&o](const std::string& t) { o.config.origin = parse_point("--origin", t, "X,Y"); });
   add_text(app, "--x-axis", "DX,DY", "of the object frame (the scan's x)",
@@ -201,7 +214,8 @@ Action add_teach(CLI::App& app) {
   add_text(app, "--symmetry-center", "X,Y", "of these turns (the contour's own centre)",
            [&o](const std::string& t) {
              o.config.symmetry_center = parse_point("--symmetry-center", t, "X,Y");
-           });
+           })
+      ->needs("--symmetry");
   app.add_option("--preview", o.preview_path, "picture of what was taught")->type_name("OUT.png");
   app.add_flag("--json", o.json, "print one JSON object");
   add_reading_and_work(app, o.reading);

@@ -52,6 +52,9 @@ std::vector<WeakPoint> weak_points(const model::Template& part) {
     std::string sentence;
   } all[] = {
       {model::kWeakSymmetryLikely, "symmetry_likely", likely_symmetry(part)},
+      {model::kWeakSymmetryDoubtful, "symmetry_doubtful",
+       "the declared turn does not lay the contour onto itself: check --symmetry and "
+       "--symmetry-center"},
       {model::kWeakDirectionLoose, "direction_loose",
        "the contour hardly holds one direction in the plane, or the turn: expect larger errors "
        "there"},

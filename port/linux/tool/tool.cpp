@@ -58,6 +58,23 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   return port::InputError(what, why, "see " + help).line();
 }
 
+// CLI11 takes an empty text for an option that was not given, and what was asked is then quietly
+// not done.
+void refuse_empty(std::span<const std::string> args) {
+  std::string before = "command line";
+  bool may_be_option = true;
+  for (const std::string& arg : args) {
+    const bool is_option = may_be_option && arg.starts_with("-");
+    const bool ends_empty = is_option && arg.starts_with("--") && arg.find('=') == arg.size() - 1;
+    if (arg.empty() || ends_empty)
+      throw port::InputError(ends_empty ? arg.substr(0, arg.size() - 1) : before,
+                             arg.empty() ? "an argument is empty" : "its value is empty",
+                             "give a value or leave it out");
+    if (arg == "--") may_be_option = false;
+    before = is_option && arg != "--" ? arg : "command line";
+  }
+}
+
 int say(std::ostream& err, const std::string& line, ExitCode code) {
   err << "flatpose: " << line << '\n' << std::flush;
   return static_cast<int>(code);
@@ -73,6 +90,7 @@ int print(const Report& report, ExitCode code, std::ostream& out, std::ostream& 
 }
 
 int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) {
+  refuse_empty(args);
   CLI::App app("Finds flat parts in range images, as a 6-DoF pose.", "flatpose");
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);

@@ -3,6 +3,8 @@
 #include <filesystem>
 
 #include "flatpose/core/fnv.hpp"
+#include "port/linux/files/atomic_file.hpp"
+#include "port/linux/tool/canvas.hpp"
 #include "tests/port/linux/tool/workbench.hpp"
 
 namespace flatpose::tool {
@@ -141,6 +143,41 @@ class BadLesson : public Workbench {
 TEST_F(BadLesson, RegionWithoutAPart) {
   expect_no_lesson({"--region", "circle:5000,5000,20"}, "; ");
   expect_no_lesson({"--mask", path("good.pcd")}, "good.pcd");
+}
+
+std::string painted(const Colour& colour, double width_px) {
+  Canvas canvas(200, 160);  // as large as the workbench's scans
+  canvas.colour(colour);
+  canvas.box(20, 20, width_px, 20);
+  return std::string(port::as_text(canvas.png()));
+}
+
+TEST_F(BadLesson, MaskThatMarksNoPartIsToBlameItself) {
+  const std::string red = folder_.write("red.png", painted({1.0, 0.0, 0.0}, 30.0));
+  expect_no_lesson({"--mask", red}, red + ": too little of its blue");
+  const std::string blue = folder_.write("blue.png", painted({0.0, 0.0, 1.0}, 30.0));
+  expect_no_lesson({"--mask", blue}, blue + ": too few edges");
+}
+
+TEST_F(BadLesson, OfTwoOutputsBothOrNeither) {
+  const std::size_t count = folder_.file_count();
+  const Words taught{"teach", path("good.pcd"), "-o", path("a.fpt"), "--preview", path("no/a.png")};
+  const Words made{"simulate", "empty", "--seed", "1",       "--cols",  "9",
+                   "--rows",   "9",     "-o",     path("b"), "--truth", path("no/b.json")};
+  expect_refused(run(taught), 2, "no/a.png: cannot write it");
+  expect_refused(run(made), 2, "no/b.json: cannot write it");
+  EXPECT_EQ(folder_.file_count(), count);
+
+  folder_.write("a.fpt", "old");
+  folder_.write("b", "older");
+  expect_refused(run(taught), 2, "no/a.png: cannot write it");
+  expect_refused(run(made), 2, "no/b.json: cannot write it");
+  EXPECT_EQ(read("a.fpt"), "old");
+  EXPECT_EQ(read("b"), "older");
+  // The other way round: where the first fails, the second was not begun.
+  expect_refused(run({"teach", path("good.pcd"), "-o", path("no/a.fpt"), "--preview", path("c")}),
+                 2, "no/a.fpt: cannot write it");
+  EXPECT_FALSE(std::filesystem::exists(path("c")));
 }
 
 TEST_F(BadLesson, OutputThatCannotBeWritten) {

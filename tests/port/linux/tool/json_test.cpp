@@ -82,6 +82,27 @@ TEST_F(Json, OfTeachAndInfoTellTheTemplate) {
   EXPECT_EQ(taught.at("scans_used"), 1);
 }
 
+TEST_F(Json, OfTeachDoubtsATurnThatDoesNotFit) {
+  const auto doubts = [](const json& taught) {
+    const json& all = taught.at("weakness");
+    return std::any_of(all.begin(), all.end(),
+                       [](const json& weak) { return weak.at("word") == "symmetry_doubtful"; });
+  };
+  EXPECT_FALSE(doubts(teach("a.pcd", "pad.fpt")));
+  EXPECT_TRUE(doubts(teach("a.pcd", "pad.fpt", {"--symmetry", "3"})));
+  const Ran told = run({"info", path("pad.fpt")});
+  EXPECT_NE(told.out.find("--symmetry-center"), std::string::npos) << told.out;
+}
+
+// The middle of the pad is not its first anchor: what is told must not read as half its size.
+TEST_F(Json, HasATextInWhichTheReachIsNoRadius) {
+  const Ran taught = run({"teach", path("a.pcd"), "-o", path("pad.fpt")});
+  for (const Ran& ran : {taught, run({"info", path("pad.fpt")})}) {
+    EXPECT_NE(ran.out.find("mm from its first anchor"), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.out.find("radius"), std::string::npos) << ran.out;
+  }
+}
+
 TEST_F(Json, OfInfoTellsScansAndWorkFiles) {
   const json scan = json::parse(run({"info", path("a.pcd"), "--json"}).out);
   EXPECT_EQ(scan.at("kind"), "scan");

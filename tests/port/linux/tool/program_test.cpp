@@ -9,9 +9,9 @@ namespace {
 
 class Program : public Workbench {
  protected:
-  Ran run_program(const std::string& words) {
-    const std::string line = std::string("'") + FLATPOSE_PROGRAM + "' " + words + " >'" +
-                             path("out") + "' 2>'" + path("err") + "'";
+  Ran run_program(const std::string& words, const std::string& before = {}) {
+    const std::string line = before + "'" + FLATPOSE_PROGRAM + "' " + words + " >'" + path("out") +
+                             "' 2>'" + path("err") + "'";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("out"), read("err")};
   }
@@ -29,6 +29,12 @@ TEST_F(Program, SimulatesTeachesAndLocates) {
   EXPECT_EQ(found.code, 0) << found.err;
   EXPECT_EQ(found.err, "");
   EXPECT_EQ(json::parse(found.out).at("matches").size(), 1U);
+}
+
+TEST_F(Program, FileSizeLimitIsAWriteError) {
+  const std::string make = "simulate single --seed 3 --cols 200 --rows 160 -o '" + path("a.pcd");
+  expect_refused(run_program(make + "'", "ulimit -f 8; "), 2, "a.pcd: cannot write it");
+  EXPECT_FALSE(std::filesystem::exists(path("a.pcd")));
 }
 
 TEST_F(Program, FailsInOneLine) {

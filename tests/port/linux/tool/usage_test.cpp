@@ -54,6 +54,42 @@ TEST(Usage, WrongCommandLinesAreOneLineAndExitCodeTwo) {
   }
 }
 
+// CLI11 would take each of these for "not given".
+TEST(Usage, EmptyIsNotTheSameAsNotGiven) {
+  const Words located{"locate", "a.fpt", "b.pcd", "--json"};
+  for (const Words& more : {Words{"--work", ""}, Words{"--work="}, Words{"--overlay="},
+                            Words{"--overlay=", "--threads", "1"}, Words{"--region", ""}, Words{""},
+                            Words{"--", ""}, Words{"--json="}}) {
+    SCOPED_TRACE(testing::PrintToString(more));
+    Words words = located;
+    words.insert(words.end(), more.begin(), more.end());
+    expect_refused(run(words), 2, "empty; give a value or leave it out");
+  }
+  expect_refused(run({"teach", "a.pcd", "-o", ""}), 2, "flatpose: -o: ");
+  expect_refused(run({"teach", "a.pcd", "-o", "a.fpt", "--name="}), 2, "flatpose: --name: ");
+  expect_refused(run({"teach", "a.pcd", "-o", "a.fpt", "--mask", ""}), 2, "flatpose: --mask: ");
+  expect_refused(run({""}), 2, "an argument is empty");
+  // After a lone -- it is the name of a file, if an odd one.
+  expect_refused(run({"info", "--", "--odd="}), 2, "flatpose: --odd=: cannot read it");
+}
+
+TEST(Usage, OptionsThatDoNotGoTogether) {
+  const Words taught{"teach", "a.pcd", "-o", "a.fpt"};
+  const auto with = [&](const Words& more) {
+    Words words = taught;
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  expect_refused(with({"--mask", "m.png", "--region", "circle:0,0,9"}), 2, "--region");
+  expect_refused(with({"--region", "circle:0,0,9", "--mask", "m.png"}), 2, "--mask");
+  expect_refused(with({"--symmetry-center", "1,2"}), 2, "--symmetry");
+  // Alone, or with its like, each is understood: what is missing then is the scan.
+  for (const Words& more :
+       {Words{"--mask", "m.png"}, Words{"--region", "circle:0,0,9"},
+        Words{"--symmetry-center", "1,2", "--symmetry", "2"}, Words{"--symmetry", "2"}})
+    expect_refused(with(more), 2, "a.pcd: cannot read it");
+}
+
 TEST(Usage, StrayWordsAreNamed) {
   expect_refused(run({"bogus"}), 2, "unknown command \"bogus\"");
   expect_refused(run({"locate", "--bogus"}), 2, "unknown option \"--bogus\"");
