@@ -79,8 +79,8 @@ struct Lesson {
 
 [[noreturn]] void fail_lesson(Status status, const Lesson& lesson) {
   // These the paint decides, where there is one; all else is the scan's.
-  const bool is_of_outline = status == Status::kNoPart || status == Status::kNoContour ||
-                             status == Status::kTooFewPoints;
+  const bool is_of_outline =
+      status == Status::kNoPart || status == Status::kNoContour || status == Status::kTooFewPoints;
   if (is_of_outline && !lesson.mask_path.empty())
     fail(status, Doing::kTeachByMask, lesson.mask_path);
   fail(status, Doing::kTeach, lesson.scans.front().path);
