@@ -100,7 +100,7 @@ Plane dominant_plane(std::span<const SurfaceSample> samples, double tolerance_mm
   // The slopes' error tilts the far ends apart: a wide window finds the plane, narrower ones settle
   // it. But a wide one may lay a plane across two levels, which no narrower one undoes: so from
   // every width, and what most samples lie on is the plane.
-  constexpr std::array<double, 3> kWidenings{6.0, 3.0, 2.0};
+  constexpr std::array<double, 4> kWidenings{6.0, 3.0, 2.0, 1.0};
   Plane best;
   double best_support = -1.0;
   for (std::size_t first = 0; first < kWidenings.size(); ++first) {
