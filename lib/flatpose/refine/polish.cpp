@@ -180,6 +180,29 @@ LevenbergMarquardtConfig solver_config() noexcept {
 
 }  // namespace
 
+Matrix<6> covariance_seen_from(const Matrix<6>& covariance, const Pose& first_T_other) noexcept {
+  const Rotation back = first_T_other.rotation.inverse();
+  const Vec3& s = first_T_other.position_mm;
+  // h_r x s = S h_r
+  const Rotation cross_s{{0, s.z, -s.y, -s.z, 0, s.x, s.y, -s.x, 0}};
+  const Rotation turn_to_shift = back * cross_s;
+  Matrix<6> a = Matrix<6>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      a(i, j) = back.m[3 * i + j];
+      a(3 + i, 3 + j) = back.m[3 * i + j];
+      a(3 + i, j) = turn_to_shift.m[3 * i + j];
+    }
+  }
+  // a C a^T, summed in a fixed order.
+  Matrix<6> out = Matrix<6>::Zero();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      for (int k = 0; k < 6; ++k)
+        for (int l = 0; l < 6; ++l) out(i, j) += a(i, k) * covariance(k, l) * a(j, l);
+  return out;
+}
+
 Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                             const Pose& work_T_object, const PolishConfig& config,
                             std::span<Crossing> crossings) noexcept {

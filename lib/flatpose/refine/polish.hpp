@@ -30,6 +30,12 @@ struct PolishResult {
   int crossing_count = 0;
 };
 
+/// A covariance of (turn, shift) in a pose's own axes, told in the axes of another frame on the
+/// same body: with T = (R, s) the way from the first to the other, h_r' = R^T h_r and h_t' = R^T
+/// (h_t + h_r x s).
+[[nodiscard]] Matrix<6> covariance_seen_from(const Matrix<6>& covariance,
+                                             const Pose& first_T_other) noexcept;
+
 /// Fits the pose to the raw points.  Memory: `crossings` holds one entry a contour point of the
 /// template. Fails: kTooFewPoints when the surface or the contour is hardly there; kShapeMismatch
 /// (crossings too short). Thread: reentrant.

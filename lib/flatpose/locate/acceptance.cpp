@@ -1,0 +1,111 @@
+#include "flatpose/locate/acceptance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flatpose/core/maths.hpp"
+#include "flatpose/model/equivalents.hpp"
+
+namespace flatpose::locate {
+namespace {
+
+// Matches may share this much of their visible surface: what leans on each other, not what lies in
+// each other.
+constexpr double kClaimedShareMax = 0.3;
+
+}  // namespace
+
+void Acceptance::note_rejected(double score) noexcept {
+  result_.best_rejected_score = std::max(result_.best_rejected_score, score);
+}
+
+void Acceptance::consider(const refine::PolishResult& polished) noexcept {
+  const Pose& pose = polished.work_T_object;
+  const Verification v = verify(part_, fine_, claimed_, pose, settings_.verify);
+  if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
+    note_rival(v.score, pose);
+    return;
+  }
+  if (v.score < settings_.score_threshold || v.visible < config_.min_visible || !is_allowed(pose)) {
+    note_rejected(v.score);
+    return;
+  }
+  result_.matches[result_.match_count++] = to_match(polished, v);
+  claim(part_, fine_, pose, settings_.verify, claimed_);
+}
+
+// A second pose in the place of a match that is no equivalent of it.
+void Acceptance::note_rival(double score, const Pose& work_T_object) noexcept {
+  constexpr double kScoreGap = 0.02;
+  constexpr double kAngleGap_rad = 10.0 * kRadPerDeg;
+  // The nearest match is the one whose place it takes; seen from there, turned by the symmetry as
+  // little as can be.
+  Pose match_T_rival;
+  int nearest = -1;
+  for (int i = 0; i < result_.match_count; ++i) {
+    const Pose relative = model::canonical_equivalent(
+        result_.matches[i].face_T_object.inverse() * (frames_.face_T_work * work_T_object),
+        part_.symmetry);
+    if (nearest >= 0 && norm(relative.position_mm) >= norm(match_T_rival.position_mm)) continue;
+    match_T_rival = relative;
+    nearest = i;
+  }
+  if (nearest < 0 || norm(match_T_rival.position_mm) >= part_.radius_mm) return;
+  if (angle_between_rad(match_T_rival.rotation, Rotation{}) <= kAngleGap_rad) return;
+  result_.rival_score = std::max(result_.rival_score, score);
+  is_ambiguous_ |= nearest == 0 && score > result_.matches[0].score - kScoreGap;
+}
+
+bool Acceptance::is_allowed(const Pose& work_T_object) const noexcept {
+  if (arc_cosine(work_T_object.rotation.m[8]) > config_.max_tilt_rad) return false;
+  const Vec3 origin_mm = (frames_.face_T_work * work_T_object).position_mm;
+  return config_.region.contains(origin_mm.x, origin_mm.y);
+}
+
+Match Acceptance::to_match(const refine::PolishResult& polished,
+                           const Verification& v) const noexcept {
+  Match match;
+  match.face_T_object =
+      model::canonical_equivalent(frames_.face_T_work * polished.work_T_object, part_.symmetry);
+  match.score = v.score;
+  match.visible = v.visible;
+  match.turn_is_free = polished.turn_is_free;
+  match.edge_rms_mm = polished.edge_rms_mm;
+  match.surface_rms_mm = polished.surface_rms_mm;
+  // Told in the axes of the equivalent that is reported, not of the one that was polished.
+  const Pose face_T_polished = frames_.face_T_work * polished.work_T_object;
+  const refine::Matrix<6> c = refine::covariance_seen_from(
+      polished.covariance, face_T_polished.inverse() * match.face_T_object);
+  match.sigma_rad = {std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2))};
+  const Rotation& r = match.face_T_object.rotation;
+  const auto variance_along = [&](int axis) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum += r.m[3 * axis + i] * c(3 + i, 3 + j) * r.m[3 * axis + j];
+    return sum;
+  };
+  match.sigma_mm = {std::sqrt(variance_along(0)), std::sqrt(variance_along(1)),
+                    std::sqrt(variance_along(2))};
+  return match;
+}
+
+void Acceptance::sort() noexcept {
+  const auto key = [this](const Match& m) {
+    switch (config_.order) {
+      case Order::kScore: return m.score * m.visible;
+      case Order::kHeight: return (frames_.work_T_face() * m.face_T_object.position_mm).z;
+      case Order::kVisible: return m.visible;
+    }
+    return 0.0;
+  };
+  // Insertion keeps equals in the order they were accepted, and needs no memory.
+  for (int i = 1; i < result_.match_count; ++i) {
+    const Match match = result_.matches[i];
+    int at = i;
+    for (; at > 0 && key(match) > key(result_.matches[at - 1]); --at)
+      result_.matches[at] = result_.matches[at - 1];
+    result_.matches[at] = match;
+  }
+}
+
+}  // namespace flatpose::locate

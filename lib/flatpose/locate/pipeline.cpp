@@ -1,0 +1,258 @@
+#include "flatpose/locate/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flatpose/core/maths.hpp"
+#include "flatpose/locate/acceptance.hpp"
+#include "flatpose/locate/settings.hpp"
+#include "flatpose/locate/workspace.hpp"
+#include "flatpose/rectify/survey.hpp"
+
+namespace flatpose::locate {
+namespace {
+
+// Below this share of valid points a scan says nothing about what is there.
+constexpr double kValidShareMin = 0.02;
+// What is this far below the threshold does not rise above it any more.
+constexpr double kHopelessShare = 0.6;
+/// One search from scan to result. Lives on the stack of locate().
+class Pipeline {
+ public:
+  Pipeline(const model::Template& part, const RangeImageView& scan, const Frames& frames,
+           const LocateConfig& config, const Limits& limits, const Clock& clock, Arena& arena,
+           LocateResult& result) noexcept
+      : part_(part),
+        scan_(scan),
+        frames_(frames),
+        config_(config),
+        limits_(limits),
+        clock_(clock),
+        arena_(arena),
+        result_(result),
+        acceptance_(part, frames, config, settings_, work_.fine, work_.claimed, result),
+        start_us_(clock.now_us()),
+        lap_us_(start_us_) {}
+
+  Status run() noexcept {
+    const Status s = run_stages();
+    result_.timings.total_us = clock_.now_us() - start_us_;
+    result_.peak_bytes = arena_.peak_bytes();
+    return s;
+  }
+
+ private:
+  Status run_stages() noexcept {
+    if (const Status s = look(); s != Status::kOk || is_over_) return s;
+    if (const Status s = build_images(); s != Status::kOk) return s;
+    for (int anchor = 0; anchor < part_.anchor_count; ++anchor) {
+      if (anchor > 0 && (acceptance_.is_full() || is_late())) break;
+      if (const Status s = search(anchor); s != Status::kOk) return s;
+      refine_all();
+      accept();
+    }
+    report();
+    return Status::kOk;
+  }
+
+  // Survey the scan, choose the grid, rectify and find edges.
+  Status look() noexcept {
+    const Result<rectify::Survey> survey = rectify::survey(scan_, frames_.work_T_scan, arena_);
+    if (!survey) return survey.status();
+    if (1.0 - survey->missing_share < kValidShareMin) return end(Outcome::kScanPoor);
+    const double pitch_mm = std::max(survey->pitch_along_row_mm, survey->pitch_along_column_mm);
+    if (!(pitch_mm > 0.0)) return end(Outcome::kScanPoor);
+    // A map finer than the scan shows nothing more.
+    constexpr double kCellsPerPitch = 0.75;
+    const double cell_mm = std::max(config_.cell_mm > 0.0 ? config_.cell_mm : part_.cell_mm,
+                                    kCellsPerPitch * pitch_mm);
+    const Result<rectify::Grid> grid = choose_grid(*survey, cell_mm);
+    if (!grid)
+      return grid.status() == Status::kTooFewPoints ? end(Outcome::kScanPoor) : grid.status();
+
+    const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
+    settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
+    const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
+    result_.timings.rectify_us = lap();
+    if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
+    if (s != Status::kOk) return s;
+    // Fewer edges than a quarter of the contour: an empty floor.
+    constexpr double kContourShareMin = 0.25;
+    const double contour_px = std::sqrt(part_.area_mm2) * 3.5 / cell_mm;
+    return static_cast<double>(scene_.edges.size()) < kContourShareMin * contour_px
+               ? end(Outcome::kEmptyScene)
+               : Status::kOk;
+  }
+
+  Result<rectify::Grid> choose_grid(const rectify::Survey& survey, double cell_mm) const noexcept {
+    rectify::GridConfig grid_config;
+    grid_config.cell_mm = cell_mm;
+    grid_config.cells_max = limits_.cell_count;
+    if (config_.region.kind != Region::Kind::kAll) {
+      const Box box = bounding_box(config_.region);
+      const Vec3 a = frames_.work_T_face() * Vec3{box.x0_mm, box.y0_mm, 0.0};
+      const Vec3 b = frames_.work_T_face() * Vec3{box.x1_mm, box.y1_mm, 0.0};
+      grid_config.region = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x),
+                            std::max(a.y, b.y)};
+      // The region bounds the origin; the part may reach beyond it.
+      grid_config.margin_mm = 2.0 * part_.radius_mm;
+    }
+    const Result<rectify::Grid> grid = rectify::choose_grid(survey, grid_config);
+    if (grid && (grid->width_px > kMapSideMax_px || grid->height_px > kMapSideMax_px))
+      return Status::kTooLarge;
+    return grid;
+  }
+
+  Status build_images() noexcept {
+    work_ = take_workspace(arena_, scene_.map.grid);
+    if (arena_.failed()) return Status::kOutOfMemory;
+    Status s = refine::build_fine_images(scene_, arena_, work_.fine);
+    if (s != Status::kOk) return s;
+    s = search::build_search_images(scene_, settings_.verify.height_tolerance_mm, arena_,
+                                    work_.coarse);
+    if (s != Status::kOk) return s;
+    s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
+                               settings_.tilt_radius_px, arena_, work_.tilt);
+    for (int y = 0; y < work_.claimed.height_px; ++y)
+      std::fill_n(work_.claimed.row(y), work_.claimed.width_px, 0);
+    result_.timings.features_us = lap();
+    return s;
+  }
+
+  Status search(int anchor) noexcept {
+    const std::size_t wanted =
+        static_cast<std::size_t>(std::min(kCandidateCountMax, 24 + 6 * config_.max_matches));
+    const Result<search::GridSearchResult> found =
+        search::grid_search(work_.coarse, work_.tilt, part_, anchor, settings_.search, arena_,
+                            work_.candidates.first(wanted));
+    if (!found) return found.status();
+    candidate_count_ = found->candidate_count;
+    result_.hypothesis_count += found->hypothesis_count;
+    result_.candidate_count += candidate_count_;
+    result_.timings.search_us += lap();
+    return Status::kOk;
+  }
+
+  // Levenberg-Marquardt from every candidate; what comes to the same pose is kept once.
+  void refine_all() noexcept {
+    const refine::PoseProblem wide(part_, work_.fine, settings_.wide);
+    const refine::PoseProblem narrow(part_, work_.fine, settings_.narrow);
+    refine::LevenbergMarquardtConfig lm;
+    lm.iteration_limit = 15;
+    lm.step_tolerance = 1e-5;
+    lm.cost_tolerance = 1e-5;
+    instance_count_ = 0;
+    for (int i = 0; i < candidate_count_ && !is_late(); ++i) {
+      // A candidate that does not hold even loosely is not worth its refinement.
+      const Pose& start = work_.candidates[i].work_T_object;
+      if (verify(part_, work_.fine, {}, start, settings_.screen).score <
+          kHopelessShare * settings_.score_threshold) {
+        continue;
+      }
+      const auto first = refine::minimize<6>(wide, start, lm);
+      const auto second = refine::minimize<6>(narrow, first.x, lm);
+      if (is_known(second.x)) continue;
+      Instance& instance = work_.instances[instance_count_++];
+      instance.work_T_object = second.x;
+      instance.verification = verify(part_, work_.fine, {}, second.x, settings_.verify);
+    }
+    std::sort(work_.instances.begin(), work_.instances.begin() + instance_count_, precedes);
+    result_.timings.refine_us += lap();
+  }
+
+  [[nodiscard]] bool is_known(const Pose& pose) const noexcept {
+    const double near_mm = 2.0 * scene_.map.grid.cell_mm;
+    for (int i = 0; i < instance_count_; ++i) {
+      const Pose& other = work_.instances[i].work_T_object;
+      const bool near =
+          norm(other.position_mm - pose.position_mm) < near_mm &&
+          angle_between_rad(other.rotation, pose.rotation) * part_.radius_mm < near_mm;
+      if (near) return true;
+    }
+    return false;
+  }
+
+  static double rank(const Verification& v) noexcept { return v.score * v.visible; }
+
+  static bool precedes(const Instance& a, const Instance& b) noexcept {
+    if (rank(a.verification) != rank(b.verification))
+      return rank(a.verification) > rank(b.verification);
+    const Vec3& p = a.work_T_object.position_mm;
+    const Vec3& q = b.work_T_object.position_mm;
+    if (p.x != q.x) return p.x < q.x;
+    if (p.y != q.y) return p.y < q.y;
+    return a.work_T_object.rotation.m < b.work_T_object.rotation.m;
+  }
+
+  // The last step on the raw points, and the verdict, best first.
+  void accept() noexcept {
+    for (int i = 0; i < instance_count_ && !acceptance_.is_full() && !is_late(); ++i) {
+      const Instance& instance = work_.instances[i];
+      if (instance.verification.score < kHopelessShare * settings_.score_threshold) {
+        acceptance_.note_rejected(instance.verification.score);
+        continue;
+      }
+      const refine::RawScan raw{scan_, frames_.work_T_scan, &scene_.map};
+      const Result<refine::PolishResult> polished =
+          refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.crossings);
+      if (polished) acceptance_.consider(*polished);
+    }
+    result_.timings.verify_us += lap();
+  }
+
+  void report() noexcept {
+    acceptance_.sort();
+    if (is_late()) {
+      result_.outcome = Outcome::kDeadline;
+    } else if (result_.match_count == 0) {
+      result_.outcome = Outcome::kNoMatch;
+    } else {
+      result_.outcome = acceptance_.is_ambiguous() ? Outcome::kAmbiguous : Outcome::kOk;
+    }
+  }
+
+  Status end(Outcome outcome) noexcept {
+    result_.outcome = outcome;
+    is_over_ = true;
+    return Status::kOk;
+  }
+
+  [[nodiscard]] bool is_late() const noexcept {
+    return config_.deadline_us > 0 && clock_.now_us() - start_us_ >= config_.deadline_us;
+  }
+
+  std::int64_t lap() noexcept {
+    const std::int64_t now_us = clock_.now_us();
+    const std::int64_t lap_us = now_us - lap_us_;
+    lap_us_ = now_us;
+    return lap_us;
+  }
+
+  const model::Template& part_;
+  const RangeImageView& scan_;
+  const Frames& frames_;
+  const LocateConfig& config_;
+  const Limits& limits_;
+  const Clock& clock_;
+  Arena& arena_;
+  LocateResult& result_;
+  Settings settings_;
+  scene::Scene scene_;
+  Workspace work_;
+  Acceptance acceptance_;
+  int candidate_count_ = 0;
+  int instance_count_ = 0;
+  bool is_over_ = false;
+  std::int64_t start_us_;
+  std::int64_t lap_us_;
+};
+
+}  // namespace
+
+Status run_pipeline(const model::Template& part, const RangeImageView& scan, const Frames& frames,
+                    const LocateConfig& config, const Limits& limits, const Clock& clock,
+                    Arena& arena, LocateResult& result) noexcept {
+  return Pipeline(part, scan, frames, config, limits, clock, arena, result).run();
+}
+
+}  // namespace flatpose::locate
