@@ -1,6 +1,5 @@
 #pragma once
-// Scenes by name: which parts lie where. Those here have parts apart from each other, flat on the
-// floor or held in the air.
+// Scenes by name: which parts lie where.
 //
 //   single     one part flat on the floor at a random place and turn
 //   lone       two of the part, apart
@@ -8,6 +7,13 @@
 //   tilt       one part held in the air at a given tilt
 //   empty      the floor
 //   cyl_loose  up to twelve standing cylinders, apart
+//   cyl_grid   35 touching cylinders in rows and columns, turned and shifted a little
+//   cyl_brick  the same with every other row half a pitch aside
+//   medium     two of the part and seven others, some on others
+//   high       two of the part among 18 to 22 others, more on top
+//   pile       18 to 22 of the part, heaped
+//
+// In all but `empty` and `tilt` a part of the kind asked for is at least 60 % visible.
 
 #include <cstdint>
 #include <memory>

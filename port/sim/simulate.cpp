@@ -5,13 +5,13 @@
 #include <limits>
 
 #include "port/sim/random.hpp"
+#include "port/sim/visible.hpp"
 #include "port/sim/world.hpp"
 
 namespace flatpose::sim {
 namespace {
 
 constexpr int kUnseen = -2;
-constexpr double kVisibleSamples = 10000.0;  // over the top of a part; a line of them is 1 %
 
 /// One laser ray: how far its light goes, and which face the camera sees it on.
 struct Reading {
@@ -121,30 +121,6 @@ class Scanner {
   std::uint64_t seed_;
   std::vector<Reading> readings_;
 };
-
-bool sees(const World& world, const Ruler& ruler, const Vec3& p_mm, const Vec3& normal) {
-  return ruler.in_field(p_mm) && ruler.faces_both(p_mm, normal) &&
-         !world.blocked(p_mm, ruler.laser_mm()) && !world.blocked(p_mm, ruler.camera_mm());
-}
-
-double visible_share(const World& world, const Ruler& ruler, const Instance& instance) {
-  const Part& part = *instance.part;
-  const double pitch_mm = std::sqrt(area_mm2(part) / kVisibleSamples);
-  const int reach = static_cast<int>(std::ceil(radius_mm(part) / pitch_mm));
-  const Vec3 normal = instance.scan_T_object.rotation.column(2);
-  int all = 0;
-  int seen = 0;
-  for (int j = -reach; j < reach; ++j) {
-    for (int i = -reach; i < reach; ++i) {
-      const Vec2 p{(i + 0.5) * pitch_mm, (j + 0.5) * pitch_mm};
-      const auto height_mm = top_height_mm(part, p);
-      if (!height_mm) continue;
-      ++all;
-      if (sees(world, ruler, instance.scan_T_object * Vec3{p.x, p.y, *height_mm}, normal)) ++seen;
-    }
-  }
-  return all > 0 ? static_cast<double>(seen) / all : 0.0;
-}
 
 }  // namespace
 

@@ -10,15 +10,18 @@ World::World(const Scene& scene) {
 }
 
 void World::add(const Instance& instance) {
-  auto solid = std::find_if(solids_.begin(), solids_.end(), [&](const auto& known) {
-    return &known->part() == instance.part.get();
-  });
-  if (solid == solids_.end()) {
-    solid = solids_.insert(solids_.end(), std::make_unique<Solid>(instance.part));
+  const Solid& solid = solid_of(instance.part);
+  const double radius_mm = solid.sphere_radius_mm();
+  bodies_.push_back({&solid, instance.scan_T_object, instance.scan_T_object.inverse(),
+                     instance.scan_T_object * solid.sphere_center_mm(), radius_mm * radius_mm});
+}
+
+const Solid& World::solid_of(const std::shared_ptr<const Part>& part) {
+  for (const auto& known : solids_) {
+    if (&known->part() == part.get()) return *known;
   }
-  const double radius_mm = (*solid)->sphere_radius_mm();
-  bodies_.push_back({solid->get(), instance.scan_T_object, instance.scan_T_object.inverse(),
-                     instance.scan_T_object * (*solid)->sphere_center_mm(), radius_mm * radius_mm});
+  solids_.push_back(std::make_unique<Solid>(part));
+  return *solids_.back();
 }
 
 bool World::may_meet(const Body& body, const Ray& ray) noexcept {

@@ -19,7 +19,14 @@ struct Hit {
 
 class World {
  public:
+  World() = default;
   explicit World(const Scene& scene);
+
+  void add(const Instance& instance);
+  /// The body added last.  Limits: there is one.
+  void remove_last() { bodies_.pop_back(); }
+  /// Made when first asked for, or when the part is first added.
+  [[nodiscard]] const Solid& solid_of(const std::shared_ptr<const Part>& part);
 
   /// What a ray that points down meets first; the floor is everywhere.
   [[nodiscard]] Hit cast(const Ray& ray) const;
@@ -35,7 +42,6 @@ class World {
     Vec3 center_mm;
     double radius_squared_mm2;
   };
-  void add(const Instance& instance);
   static bool may_meet(const Body& body, const Ray& ray) noexcept;
   static Ray in_object(const Body& body, const Ray& ray) noexcept;
 
