@@ -15,6 +15,7 @@
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/clock.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/frames.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/geometry/region.hpp"
@@ -31,6 +32,7 @@ struct Limits {
   int scan_width_px = 1536;
   int scan_height_px = 1280;
   int cell_count = 4'000'000;  ///< Cells of the finest height map: field area over cell area.
+  VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
 enum class Order { kScore, kHeight, kVisible };

@@ -72,6 +72,7 @@ class Pipeline {
 
     const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
+    settings_.search.vector_path = limits_.vector_path;
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
     result_.timings.rectify_us = lap();
     if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
@@ -108,14 +109,24 @@ class Pipeline {
     if (arena_.failed()) return Status::kOutOfMemory;
     Status s = refine::build_fine_images(scene_, arena_, work_.fine);
     if (s != Status::kOk) return s;
-    s = search::build_search_images(scene_, settings_.verify.height_tolerance_mm, arena_,
-                                    work_.coarse);
-    if (s != Status::kOk) return s;
-    s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
-                               settings_.tilt_radius_px, arena_, work_.tilt);
+    s = build_coarse_images();
     for (int y = 0; y < work_.claimed.height_px; ++y)
       std::fill_n(work_.claimed.row(y), work_.claimed.width_px, 0);
     result_.timings.features_us = lap();
+    return s;
+  }
+
+  Status build_coarse_images() noexcept {
+    Status s =
+        search::halve_heights(scene_, settings_.verify.height_tolerance_mm, arena_, work_.coarse);
+    if (s != Status::kOk) return s;
+    s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
+                               settings_.tilt_radius_px, arena_, work_.tilt);
+    if (s != Status::kOk) return s;
+    search::collect_places(work_.tilt, settings_.places, work_.places);
+    s = search::build_search_images(scene_, settings_.search_images, work_.places.range, arena_,
+                                    work_.coarse);
+    if (s == Status::kOk) search::set_heights(work_.tilt, work_.coarse, work_.places);
     return s;
   }
 
@@ -123,8 +134,8 @@ class Pipeline {
     const std::size_t wanted =
         static_cast<std::size_t>(std::min(kCandidateCountMax, 24 + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
-        search::grid_search(work_.coarse, work_.tilt, part_, anchor, settings_.search, arena_,
-                            work_.candidates.first(wanted));
+        search::grid_search(work_.coarse, work_.tilt, work_.places, part_, anchor, settings_.search,
+                            arena_, work_.candidates.first(wanted));
     if (!found) return found.status();
     candidate_count_ = found->candidate_count;
     result_.hypothesis_count += found->hypothesis_count;

@@ -10,6 +10,26 @@ double bounded(double value, double low, double high) noexcept {
   return std::max(low, std::min(value, high));
 }
 
+// How far from an anchor the points of the search lie.
+double sparse_reach_mm(const model::Template& part) noexcept {
+  const auto contour = part.contour_points();
+  const auto surface = part.surface_points();
+  const search::ScoreConfig score;
+  double squared_mm2 = 0.0;
+  const auto include = [&](double x_mm, double y_mm) {
+    for (int i = 0; i < part.anchor_count; ++i) {
+      const double dx = x_mm - part.anchors[i].x_mm;
+      const double dy = y_mm - part.anchors[i].y_mm;
+      squared_mm2 = std::max(squared_mm2, dx * dx + dy * dy);
+    }
+  };
+  for (const auto& p : contour.first(std::min<std::size_t>(contour.size(), score.contour_count)))
+    include(p.x_mm, p.y_mm);
+  for (const auto& p : surface.first(std::min<std::size_t>(surface.size(), score.surface_count)))
+    include(p.x_mm, p.y_mm);
+  return std::sqrt(squared_mm2);
+}
+
 }  // namespace
 
 Settings derive_settings(const model::Template& part, const LocateConfig& config, double noise_mm,
@@ -35,13 +55,15 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   // A large part is found from farther off than one cell.
   constexpr double kCellsPerStride = 16.0;
   const double across_px = std::sqrt(part.area_mm2) / coarse_mm;
-  s.search.stride_px = static_cast<int>(bounded(across_px / kCellsPerStride, 1.0, 2.0));
-  s.search.max_tilt_rad = config.max_tilt_rad;
-  s.search.planarity_mm = 2.0 * noise_mm + 0.1 * cell_mm;
-  s.search.score.use_height = config.use_height;
-  s.search.score.use_directions = config.use_directions;
+  s.places.stride_px = static_cast<int>(bounded(across_px / kCellsPerStride, 1.0, 2.0));
+  s.places.max_tilt_rad = config.max_tilt_rad;
+  s.places.planarity_mm = 2.0 * noise_mm + 0.1 * cell_mm;
+  s.search_images.stride_px = s.places.stride_px;
+  s.search_images.reach_px = static_cast<int>(sparse_reach_mm(part) / coarse_mm) + 2;
+  s.search_images.use_height = config.use_height;
+  s.search_images.use_directions = config.use_directions;
   // The tilt read at the anchor is off by some 3 degrees at worst.
-  s.search.score.height_tolerance_mm =
+  s.search_images.height_tolerance_mm =
       bounded(0.05 * part.radius_mm + 3.0 * noise_mm, height_tolerance_mm,
               std::max(0.9 * step_mm, height_tolerance_mm));
 

@@ -13,6 +13,8 @@ namespace flatpose::locate {
 
 struct Settings {
   scene::SceneConfig scene;
+  search::PlaceConfig places;
+  search::SearchImagesConfig search_images;
   search::GridSearchConfig search;
   int tilt_radius_px = 3;  ///< Of the window that the tilt is read from, on the coarse level.
   refine::PoseProblemConfig wide;    ///< First refinement: from the grid's distance.

@@ -12,6 +12,7 @@ Workspace take_workspace(Arena& arena, const rectify::Grid& grid) noexcept {
   work.fine = refine::take_fine_images(arena, grid);
   work.coarse = search::take_search_images(arena, grid);
   work.tilt = search::take_tilt_field(arena, work.coarse.grid.width_px, work.coarse.grid.height_px);
+  work.places = search::take_places(arena, work.coarse.grid.width_px, work.coarse.grid.height_px);
   work.claimed = arena.take_image<std::uint8_t>(grid.width_px, grid.height_px);
   work.candidates = arena.take<search::Candidate>(kCandidateCountMax);
   work.instances = arena.take<Instance>(kCandidateCountMax);

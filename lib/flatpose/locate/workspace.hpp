@@ -10,6 +10,7 @@
 #include "flatpose/refine/raw_contour.hpp"
 #include "flatpose/scene/scene.hpp"
 #include "flatpose/search/grid_search.hpp"
+#include "flatpose/search/places.hpp"
 #include "flatpose/search/search_images.hpp"
 #include "flatpose/search/tilt_field.hpp"
 
@@ -27,6 +28,7 @@ struct Workspace {
   refine::FineImages fine;
   search::SearchImages coarse;
   search::TiltField tilt;
+  search::Places places;
   ImageView<std::uint8_t> claimed;
   std::span<search::Candidate> candidates;
   std::span<Instance> instances;

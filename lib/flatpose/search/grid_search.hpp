@@ -1,12 +1,15 @@
 #pragma once
-// The grid search over x, y and phi (Ingberg 2015, 2.10): every planar cell of the coarse level is
-// a place for the anchor, every angle of the part's symmetry sector a hypothesis there.
+// The grid search over x, y and phi (Ingberg 2015, 2.10): every planar place of the coarse level
+// may carry an anchor, every angle of the part's symmetry sector is a hypothesis there.
 
 #include <span>
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/result.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
+#include "flatpose/search/block_search.hpp"
+#include "flatpose/search/places.hpp"
 #include "flatpose/search/score.hpp"
 #include "flatpose/search/search_images.hpp"
 #include "flatpose/search/tilt_field.hpp"
@@ -17,13 +20,10 @@ inline constexpr int kAngleCountMax = 720;
 
 struct GridSearchConfig {
   ScoreConfig score;
-  int stride_px =
-      1;  ///< Only every so many-th cell is a place, >= 1; the refinement comes home from further.
   double angle_step_rad = 0.12;  ///< > 0; finer costs time in proportion.
-  double max_tilt_rad = 0.8;     ///< Steeper places are no hypotheses; 0..1.57.
-  double planarity_mm = 0.5;  ///< Places whose plane fit leaves more than this are no hypotheses.
-  double cost_share_max =
-      0.6;  ///< Hypotheses dearer than this share of the worst are no candidates; 0..1.
+  /// Hypotheses dearer than this share of the worst are no candidates; 0..1.
+  double cost_share_max = 0.6;
+  VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
 /// One hypothesis worth a closer look.
@@ -31,7 +31,7 @@ struct Candidate {
   std::int32_t cost_q10 = 0;  ///< Cost as a share of the worst at its own tilt, times 1024. The
                               ///< list is in order of the plain cost.
   std::int32_t angle_index = 0;
-  std::int16_t column = 0;
+  std::int16_t column = 0;  ///< Of the cell.
   std::int16_t row = 0;
   std::int16_t anchor = 0;
   Pose work_T_object;
@@ -46,13 +46,14 @@ struct GridSearchResult {
 /// resolution, also from a measuring arena.
 void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept;
 
-/// Finds the best hypotheses that differ in place or angle.
-/// Shape: `field` fits `images.grid`.  Cost: places x angles x points, ended early against the best
-/// so far. Memory: `scratch` takes about 70 bytes a cell.  Fails: kOutOfMemory, kShapeMismatch,
+/// Searches all places and angles, and fills `candidates` with the best that differ in place or
+/// angle.
+/// Cost: places x angles x points, ended early against the best so far.  Memory: `scratch` takes 8
+/// bytes a place.  Fails: kOutOfMemory, kShapeMismatch (places of another lattice),
 /// kInvalidArgument (anchor_index; a config field out of its range).
 /// Ties: by row, column, angle.  Thread: reentrant.
 [[nodiscard]] Result<GridSearchResult> grid_search(const SearchImages& images,
-                                                   const TiltField& field,
+                                                   const TiltField& field, const Places& places,
                                                    const model::Template& part, int anchor_index,
                                                    const GridSearchConfig& config, Arena& scratch,
                                                    std::span<Candidate> candidates) noexcept;

@@ -11,63 +11,94 @@
 namespace flatpose::search {
 namespace {
 
-double middle_height(ImageView<const float> filled_mm) noexcept {
-  float low = filled_mm(0, 0);
-  float high = low;
-  for (int y = 0; y < filled_mm.height_px; ++y) {
-    const float* row = filled_mm.row(y);
-    for (int x = 0; x < filled_mm.width_px; ++x) {
-      low = std::min(low, row[x]);
-      high = std::max(high, row[x]);
-    }
-  }
-  return 0.5 * (static_cast<double>(low) + static_cast<double>(high));
+bool is_valid(const SearchImagesConfig& config) noexcept {
+  return config.stride_px >= 1 && config.stride_px <= kStrideMax_px &&
+         config.height_tolerance_mm > 0.0 && config.normal_tolerance_rad > 0.0;
 }
 
-void quantise_heights(const SearchImages& images) noexcept {
-  for (int y = 0; y < images.grid.height_px; ++y) {
-    const float* filled_mm = images.filled_mm.row(y);
-    std::int16_t* unit = images.height_unit.row(y);
-    for (int x = 0; x < images.grid.width_px; ++x) {
-      const double value = std::floor(
-          (static_cast<double>(filled_mm[x]) - images.base_mm) * kHeightUnitsPerMm + 0.5);
-      unit[x] = static_cast<std::int16_t>(std::clamp(value, -kHeightUnitMax, kHeightUnitMax));
-    }
+std::size_t image_bytes_max(int width_px, int height_px) noexcept {
+  std::size_t most = 0;
+  for (int stride_px = 1; stride_px <= kStrideMax_px; ++stride_px) {
+    most = std::max(most, make_lattice(width_px, height_px, stride_px, kReachMax_px).image_bytes());
   }
+  return most;
 }
 
-Status quantise_normals(const SearchImages& images, Arena& scratch) noexcept {
+// Fine enough for the tolerance, coarse enough for the range to fit a byte.
+void choose_units(const HeightRange& range, SearchImages& images) noexcept {
+  const double tolerance_mm = images.config.height_tolerance_mm;
+  const double low_mm = range.low_mm - 2.0 * tolerance_mm;
+  const double span_mm = range.high_mm + 2.0 * tolerance_mm - low_mm;
+  images.base_mm = low_mm;
+  images.height_unit_mm = std::max(tolerance_mm / kSurfaceCostMax, span_mm / kHeightUnitMax);
+  images.surface_cap = kSurfaceCostMax;
+  images.surface_weight = 1;
+  if (!images.config.use_height) return;
+  images.surface_cap = std::clamp(
+      static_cast<std::int32_t>(tolerance_mm / images.height_unit_mm + 0.5), 2, kSurfaceCostMax);
+  images.surface_weight = kSurfaceCostMax / images.surface_cap;
+}
+
+std::uint8_t* image_at(const SearchImages& images, int index) noexcept {
+  return images.bytes.data() + static_cast<std::size_t>(index) * images.lattice.image_bytes();
+}
+
+Status spread_heights(const SearchImages& images, Arena& scratch) noexcept {
   const ArenaScope scope(scratch);
-  const ImageView<float> nx =
-      scratch.take_image<float>(images.grid.width_px, images.grid.height_px);
-  const ImageView<float> ny =
-      scratch.take_image<float>(images.grid.width_px, images.grid.height_px);
+  const auto unit = scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
+  if (scratch.failed()) return Status::kOutOfMemory;
+  for (int y = 0; y < unit.height_px; ++y) {
+    const float* filled_mm = images.filled_mm.row(y);
+    std::uint8_t* row = unit.row(y);
+    for (int x = 0; x < unit.width_px; ++x) row[x] = height_unit(filled_mm[x], images);
+  }
+  spread(unit, images.lattice, kOutsideUnit, image_at(images, SearchImages::kSurfaceImage));
+  return Status::kOk;
+}
+
+Status spread_normals(const SearchImages& images, Arena& scratch) noexcept {
+  const ArenaScope scope(scratch);
+  const int width_px = images.grid.width_px;
+  const int height_px = images.grid.height_px;
+  const ImageView<float> nx = scratch.take_image<float>(width_px, height_px);
+  const ImageView<float> ny = scratch.take_image<float>(width_px, height_px);
+  const auto unit = scratch.take_image<std::uint8_t>(width_px, height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
   if (const Status s = image::normal_map(images.filled_mm, images.grid.cell_mm, nx, ny);
       s != Status::kOk)
     return s;
-  const auto unit = [](float component) {
-    return static_cast<std::int8_t>(
-        std::floor(static_cast<double>(component) * kNormalUnits + 0.5));
-  };
-  for (int y = 0; y < images.grid.height_px; ++y) {
-    for (int x = 0; x < images.grid.width_px; ++x) {
-      images.normal_x_unit(x, y) = unit(nx(x, y));
-      images.normal_y_unit(x, y) = unit(ny(x, y));
+  for (int axis = 0; axis < 2; ++axis) {
+    const ImageView<float> component = axis == 0 ? nx : ny;
+    for (int y = 0; y < height_px; ++y) {
+      for (int x = 0; x < width_px; ++x) {
+        unit(x, y) = static_cast<std::uint8_t>(normal_unit(component(x, y), images.config));
+      }
     }
+    spread(unit, images.lattice, kOutsideUnit,
+           image_at(images, SearchImages::kSurfaceImage + axis));
   }
   return Status::kOk;
 }
 
+void lower_to(ImageView<const std::uint8_t> other, ImageView<std::uint8_t> lowest) noexcept {
+  for (int y = 0; y < lowest.height_px; ++y) {
+    const std::uint8_t* from = other.row(y);
+    std::uint8_t* row = lowest.row(y);
+    for (int x = 0; x < lowest.width_px; ++x) row[x] = std::min(row[x], from[x]);
+  }
+}
+
 // The scene's edges at the coarse level: found where they are sharpest, drawn where they are
 // needed.
-Status build_edge_costs(const scene::Scene& scene, Arena& scratch,
-                        const SearchImages& images) noexcept {
+Status spread_edge_costs(const scene::Scene& scene, Arena& scratch,
+                         const SearchImages& images) noexcept {
   const ArenaScope scope(scratch);
   const std::span<image::EdgePoint> edges = scratch.take<image::EdgePoint>(scene.edges.size());
   image::OctantImages masks;
-  for (auto& mask : masks) {
-    mask = scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
+  image::OctantImages distances;
+  for (auto* set : {&masks, &distances}) {
+    for (auto& image : *set)
+      image = scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
   }
   if (scratch.failed()) return Status::kOutOfMemory;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -76,17 +107,34 @@ Status build_edge_costs(const scene::Scene& scene, Arena& scratch,
     edges[i].row = static_cast<std::int16_t>(edges[i].row / 2);
   }
   if (const Status s = image::draw_direction_channels(edges, {}, masks); s != Status::kOk) return s;
-  if (const Status s = image::chamfer_channels(masks, images.edge_cost); s != Status::kOk) return s;
-  for (const ImageView<std::uint8_t>& cost : images.edge_cost) {
-    for (int y = 0; y < cost.height_px; ++y) {
-      std::uint8_t* row = cost.row(y);
-      for (int x = 0; x < cost.width_px; ++x) row[x] = std::min(row[x], kEdgeCostMax);
+  if (const Status s = image::chamfer_channels(masks, distances); s != Status::kOk) return s;
+  for (const auto& distance : distances) {
+    for (int y = 0; y < distance.height_px; ++y) {
+      std::uint8_t* row = distance.row(y);
+      for (int x = 0; x < distance.width_px; ++x) row[x] = std::min(row[x], kEdgeCostMax);
     }
   }
+  if (!images.config.use_directions) {
+    for (int k = 1; k < image::kOctantCount; ++k) lower_to(distances[k], distances[0]);
+  }
+  const int image_count = images.config.use_directions ? image::kOctantCount : 1;
+  for (int k = 0; k < image_count; ++k)
+    spread(distances[k], images.lattice, kEdgeCostUnknown, image_at(images, k));
   return Status::kOk;
 }
 
 }  // namespace
+
+std::int16_t normal_unit(double component, const SearchImagesConfig& config) noexcept {
+  const double unit = config.normal_tolerance_rad / kSurfaceCostMax;
+  const double value = std::floor(component / unit + 0.5) + kNormalZero;
+  return static_cast<std::int16_t>(std::clamp(value, 0.0, 2.0 * kNormalZero));
+}
+
+std::uint8_t height_unit(double height_mm, const SearchImages& images) noexcept {
+  const double value = std::floor((height_mm - images.base_mm) / images.height_unit_mm + 0.5);
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0, 1.0 * kHeightUnitMax));
+}
 
 SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcept {
   SearchImages images;
@@ -94,24 +142,34 @@ SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcep
   const int width_px = images.grid.width_px;
   const int height_px = images.grid.height_px;
   images.filled_mm = arena.take_image<float>(width_px, height_px);
-  images.missing = arena.take_image<std::uint8_t>(width_px, height_px);
-  for (auto& cost : images.edge_cost) cost = arena.take_image<std::uint8_t>(width_px, height_px);
-  images.height_unit = arena.take_image<std::int16_t>(width_px, height_px);
-  images.normal_x_unit = arena.take_image<std::int8_t>(width_px, height_px);
-  images.normal_y_unit = arena.take_image<std::int8_t>(width_px, height_px);
+  images.bytes =
+      arena.take<std::uint8_t>(SearchImages::kImageCountMax * image_bytes_max(width_px, height_px));
   return images;
 }
 
-Status build_search_images(const scene::Scene& scene, double jump_mm, Arena& scratch,
+Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
+                     SearchImages& images) noexcept {
+  const ArenaScope scope(scratch);
+  const auto missing =
+      scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
+  if (scratch.failed()) return Status::kOutOfMemory;
+  const Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm);
+  return s == Status::kOk
+             ? image::fill_missing(images.filled_mm, images.filled_mm, missing, scratch)
+             : s;
+}
+
+Status build_search_images(const scene::Scene& scene, const SearchImagesConfig& config,
+                           const HeightRange& range, Arena& scratch,
                            SearchImages& images) noexcept {
-  Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm);
-  if (s != Status::kOk) return s;
-  s = image::fill_missing(images.filled_mm, images.filled_mm, images.missing, scratch);
-  if (s != Status::kOk) return s;
-  images.base_mm = middle_height(images.filled_mm);
-  quantise_heights(images);
-  s = quantise_normals(images, scratch);
-  return s == Status::kOk ? build_edge_costs(scene, scratch, images) : s;
+  if (!is_valid(config)) return Status::kInvalidArgument;
+  images.config = config;
+  images.lattice =
+      make_lattice(images.grid.width_px, images.grid.height_px, config.stride_px, config.reach_px);
+  choose_units(range, images);
+  const Status s =
+      config.use_height ? spread_heights(images, scratch) : spread_normals(images, scratch);
+  return s == Status::kOk ? spread_edge_costs(scene, scratch, images) : s;
 }
 
 }  // namespace flatpose::search

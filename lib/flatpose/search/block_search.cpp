@@ -1,0 +1,62 @@
+#include "flatpose/search/block_search.hpp"
+
+#include <algorithm>
+
+namespace flatpose::search {
+
+void search_block_portable(const BlockJob& job) noexcept;
+void search_block_avx2(const BlockJob& job) noexcept;
+void search_block_avx512(const BlockJob& job) noexcept;
+
+namespace {
+
+// expected_unit() for a byte: clamp(place, low, high) + rise.
+void set_rise(std::int32_t rise_unit, ShiftedPoint& p) noexcept {
+  const std::int32_t rise = std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax);
+  p.low = static_cast<std::uint8_t>(std::max(0, -rise));
+  p.high = static_cast<std::uint8_t>(kHeightUnitMax - std::max(0, rise));
+  p.rise = static_cast<std::uint8_t>(rise);
+}
+
+}  // namespace
+
+ShiftedTemplate shifted(const ProjectedTemplate& projected, const SearchImages& images) noexcept {
+  const auto image_bytes = static_cast<std::int32_t>(images.lattice.image_bytes());
+  const std::int32_t surface_image = SearchImages::kSurfaceImage * image_bytes;
+  ShiftedTemplate t;
+  t.contour_count = projected.contour_count;
+  t.surface_count = projected.surface_count;
+  t.edge_factor_q8 = projected.edge_factor_q8;
+  for (int i = 0; i < projected.contour_count; ++i) {
+    const ProjectedTemplate::Contour& from = projected.contour[i];
+    const std::int32_t shift = images.lattice.offset_bytes(from.dx, from.dy);
+    const std::int32_t octant = images.config.use_directions ? from.octant : 0;
+    t.contour[i].offset_bytes = octant * image_bytes + shift;
+    t.contour[i].second_offset_bytes = surface_image + shift;
+    set_rise(from.rise_unit, t.contour[i]);
+  }
+  for (int i = 0; i < projected.surface_count; ++i) {
+    const ProjectedTemplate::Surface& from = projected.surface[i];
+    const std::int32_t shift = images.lattice.offset_bytes(from.dx, from.dy);
+    t.surface[i].offset_bytes = surface_image + shift;
+    t.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
+    if (images.config.use_height) {
+      set_rise(from.rise_unit, t.surface[i]);
+    } else {
+      t.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
+      t.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);
+    }
+  }
+  return t;
+}
+
+SearchBlock search_block_for(VectorPath path) noexcept {
+#ifdef FLATPOSE_X86_PATHS
+  if (path == VectorPath::kAvx2) return search_block_avx2;
+  if (path == VectorPath::kAvx512) return search_block_avx512;
+#endif
+  (void)path;
+  return search_block_portable;
+}
+
+}  // namespace flatpose::search

@@ -1,0 +1,68 @@
+#pragma once
+// The inner loop of the grid search: for one block of places, all angles. A template point is the
+// same shift for every place of the block, so the costs of the block are sums of contiguous loads
+// (score.hpp says of what). The loop is written once and compiled once for every vector width; each
+// form equals the scalar cost in every bit.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "flatpose/core/vector_path.hpp"
+#include "flatpose/search/score.hpp"
+
+namespace flatpose::search {
+
+// The best of each quarter of the angles is kept apart at every place, so that a part that is
+// nearly symmetric does not lose its true angle to a neighbour's false one.
+inline constexpr int kSectorCount = 4;
+inline constexpr std::uint8_t kNoAngle = 255;
+
+/// A template point as the loop takes it.
+struct ShiftedPoint {
+  std::int32_t offset_bytes = 0;         ///< To its edge, height or normal's x image.
+  std::int32_t second_offset_bytes = 0;  ///< To its height (contour), normal's y (surface).
+  // expected = clamp(place, low, high) + rise, modulo 256: expected_unit() without overflow.
+  std::uint8_t low = 0;  ///< Normals: the expected x and y.
+  std::uint8_t high = 0;
+  std::uint8_t rise = 0;
+};
+
+struct ShiftedTemplate {
+  std::int32_t contour_count = 0;
+  std::int32_t surface_count = 0;
+  std::int32_t edge_factor_q8 = 256;
+  std::array<ShiftedPoint, kContourCountMax> contour;
+  std::array<ShiftedPoint, kSurfaceCountMax> surface;
+};
+
+[[nodiscard]] ShiftedTemplate shifted(const ProjectedTemplate& projected,
+                                      const SearchImages& images) noexcept;
+
+struct BlockJob {
+  const std::uint8_t* image_bytes = nullptr;  ///< Of the block's first place, first image.
+  const std::uint8_t* place_unit = nullptr;   ///< Heights of the block's places.
+  const std::uint16_t* bin = nullptr;         ///< Of the block's places.
+  std::uint16_t wanted_bin = 0;               ///< Only its places are written to.
+  std::span<const ShiftedTemplate> angles;    ///< At most kSectorCount x kNoAngle.
+  bool use_height = true;
+  std::uint8_t surface_cap = 0;
+  std::uint8_t surface_weight = 1;
+  std::uint8_t cutoff = 0;  ///< Only costs below it count.
+  /// By sector: the lowest cost of every place, and the angle within the sector, kNoAngle for none.
+  /// Of equal costs the first angle's.
+  std::array<std::uint8_t*, kSectorCount> best_cost{};
+  std::array<std::uint8_t*, kSectorCount> best_angle{};
+};
+
+/// The first angle of a sector; angles are shared out evenly.
+[[nodiscard]] constexpr int sector_begin(int sector, int angle_count) noexcept {
+  return (sector * angle_count + kSectorCount - 1) / kSectorCount;
+}
+
+using SearchBlock = void (*)(const BlockJob&) noexcept;
+
+/// The form for a path; the portable one where this build has no such.
+[[nodiscard]] SearchBlock search_block_for(VectorPath path) noexcept;
+
+}  // namespace flatpose::search

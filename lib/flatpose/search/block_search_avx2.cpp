@@ -1,0 +1,7 @@
+#include "flatpose/search/block_search.hpp"
+#define FLATPOSE_LANES 32
+#include "flatpose/search/block_search.inc"
+
+namespace flatpose::search {
+void search_block_avx2(const BlockJob& job) noexcept { search_block(job); }
+}  // namespace flatpose::search

@@ -1,0 +1,7 @@
+#include "flatpose/search/block_search.hpp"
+#define FLATPOSE_LANES 16
+#include "flatpose/search/block_search.inc"
+
+namespace flatpose::search {
+void search_block_portable(const BlockJob& job) noexcept { search_block(job); }
+}  // namespace flatpose::search
