@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "tests/lib/image/image.hpp"
-#include "tests/lib/search/made_images.hpp"
+#include "tests/lib/search/memory.hpp"
 
 namespace flatpose::search {
 namespace {
