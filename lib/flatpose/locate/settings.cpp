@@ -30,6 +30,25 @@ double sparse_reach_mm(const model::Template& part) noexcept {
   return std::sqrt(squared_mm2);
 }
 
+// The window that the tilt is read from fits into every anchor's disc, corners and half a stride
+// counted in, and is no wider than noise asks for: a narrow one finds room between what covers the
+// part.
+int tilt_radius_px(const model::Template& part, double noise_mm, double coarse_mm) noexcept {
+  constexpr double kDiscShare = 0.65;
+  constexpr double kSlopeSigma = 0.01;
+  double clearance_mm = part.anchors[0].clearance_mm;
+  for (int i = 1; i < part.anchor_count; ++i)
+    clearance_mm = std::min(clearance_mm, static_cast<double>(part.anchors[i].clearance_mm));
+  const double widest = std::min(kDiscShare * clearance_mm / coarse_mm, 8.0);
+  int radius_px = 3;
+  for (; radius_px < widest; ++radius_px) {
+    const double n = (2.0 * radius_px + 1.0) * (2.0 * radius_px + 1.0);
+    const double spread_mm = coarse_mm * std::sqrt(n * radius_px * (radius_px + 1.0) / 3.0);
+    if (noise_mm <= kSlopeSigma * spread_mm) break;
+  }
+  return static_cast<int>(bounded(std::min(1.0 * radius_px, widest), 1.0, 8.0));
+}
+
 }  // namespace
 
 Settings derive_settings(const model::Template& part, const LocateConfig& config, double noise_mm,
@@ -67,8 +86,7 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
       bounded(0.05 * part.radius_mm + 3.0 * noise_mm, height_tolerance_mm,
               std::max(0.9 * step_mm, height_tolerance_mm));
 
-  const double clearance_px = part.anchors[0].clearance_mm / coarse_mm;
-  s.tilt_radius_px = static_cast<int>(bounded(0.65 * clearance_px, 1.0, 8.0));
+  s.tilt_radius_px = tilt_radius_px(part, noise_mm, coarse_mm);
 
   s.wide.edge_reach_mm = reach_mm;
   s.wide.height_reach_mm = std::max(3.0 * height_tolerance_mm, 0.05 * part.radius_mm);

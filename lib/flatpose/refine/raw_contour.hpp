@@ -18,7 +18,7 @@ struct Crossing {
   bool found = false;
   double offset_mm = 0.0;  ///< Along the contour's outward normal: measured minus expected.
   double width_mm = 0.0;   ///< Over which the height falls, beyond one step of the scan: 0 at a
-                          ///< sharp edge; where a ramp ends depends on how the sensor looks at it.
+                           ///< sharp edge; where a ramp ends depends on how the sensor looks at it.
 };
 
 /// Measures one contour point.  Cost: one scan line over at most a few dozen points.  Thread:

@@ -38,7 +38,8 @@ class Search {
         anchor_(part.anchors[anchor_index]),
         anchor_index_(anchor_index),
         config_(config),
-        angle_count_(angle_count(part.symmetry, config.angle_step_rad)) {}
+        angle_range_rad_(angle_range_rad(part.symmetry, anchor_)),
+        angle_count_(angle_count(angle_range_rad_, config.angle_step_rad)) {}
 
   bool take_memory(Arena& scratch) noexcept {
     memory_ = take_search_memory(scratch, places_.bin.size());
@@ -130,7 +131,7 @@ class Search {
   }
 
   [[nodiscard]] double angle_rad(int index) const noexcept {
-    return angle_range_rad(part_.symmetry) * index / angle_count_;
+    return angle_range_rad_ * index / angle_count_;
   }
 
   [[nodiscard]] bool angles_are_close(int a, int b) const noexcept {
@@ -198,6 +199,7 @@ class Search {
   const model::Anchor& anchor_;
   int anchor_index_;
   const GridSearchConfig& config_;
+  double angle_range_rad_;
   int angle_count_;
   SearchMemory memory_;
 };
@@ -230,13 +232,16 @@ void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
   (void)take_search_memory(arena, place_count);
 }
 
-double angle_range_rad(const model::Symmetry& symmetry) noexcept {
-  return symmetry.order == model::kFullSymmetry ? 0.0 : 2.0 * kPi / symmetry.order;
+double angle_range_rad(const model::Symmetry& symmetry, const model::Anchor& anchor) noexcept {
+  if (symmetry.order != model::kFullSymmetry) return 2.0 * kPi / symmetry.order;
+  const double dx = anchor.x_mm - symmetry.center_x_mm;
+  const double dy = anchor.y_mm - symmetry.center_y_mm;
+  const double near_mm = 0.1 * anchor.clearance_mm;
+  return dx * dx + dy * dy <= near_mm * near_mm ? 0.0 : 2.0 * kPi;
 }
 
-int angle_count(const model::Symmetry& symmetry, double angle_step_rad) noexcept {
-  const double range_rad = angle_range_rad(symmetry);
-  const double count = std::ceil(range_rad / angle_step_rad);
+int angle_count(double angle_range_rad, double angle_step_rad) noexcept {
+  const double count = std::ceil(angle_range_rad / angle_step_rad);
   return std::clamp(static_cast<int>(std::min(count, 1.0 * kAngleCountMax)), 1, kAngleCountMax);
 }
 

@@ -58,9 +58,11 @@ void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept;
                                                    const GridSearchConfig& config, Arena& scratch,
                                                    std::span<Candidate> candidates) noexcept;
 
-/// The angles that the part's symmetry leaves to search.
-[[nodiscard]] int angle_count(const model::Symmetry& symmetry, double angle_step_rad) noexcept;
-/// The size of the sector that they share evenly.
-[[nodiscard]] double angle_range_rad(const model::Symmetry& symmetry) noexcept;
+/// The size of the sector of angles that the part's symmetry leaves to search. A part of full
+/// symmetry has one angle, as long as the anchor is its centre.
+[[nodiscard]] double angle_range_rad(const model::Symmetry& symmetry,
+                                     const model::Anchor& anchor) noexcept;
+/// The angles that share it evenly.
+[[nodiscard]] int angle_count(double angle_range_rad, double angle_step_rad) noexcept;
 
 }  // namespace flatpose::search

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flatpose/image/chamfer.hpp"
 #include "flatpose/search/tilt_field.hpp"
@@ -123,17 +124,24 @@ Status place_anchors(const SurfaceSamples& samples, const Pose& work_T_object, d
     const SurfaceSample& s = samples.samples[i];
     return object_T_work * Vec3{s.x_mm, s.y_mm, s.z_mm};
   };
-  // A fallback lies away from the ones before it, or it would be covered with them.
+  // The first is the widest flat disc. A fallback lies as far from those before it as a disc of
+  // some width can, or it would be covered with them.
+  constexpr double kFallbackShare = 0.45;
   const auto worth = [&](int i) {
     const Vec3 p = object_of(i);
+    const double clearance_mm = samples.clearance_mm[i];
     if (std::fabs(p.z) > tolerance_mm) return 0.0;
-    double apart_mm = samples.clearance_mm[i];
+    if (part.anchor_count == 0) return clearance_mm;
+    const double first_mm = part.anchors[0].clearance_mm;
+    if (clearance_mm < kFallbackShare * first_mm) return 0.0;
+    double apart_mm = std::numeric_limits<double>::max();
     for (int k = 0; k < part.anchor_count; ++k) {
       const double dx = p.x - part.anchors[k].x_mm;
       const double dy = p.y - part.anchors[k].y_mm;
-      apart_mm = std::min(apart_mm, 0.5 * std::sqrt(dx * dx + dy * dy));
+      apart_mm = std::min(apart_mm, std::sqrt(dx * dx + dy * dy));
     }
-    return apart_mm;
+    // What lies within a disc already placed is no other place.
+    return apart_mm > first_mm ? apart_mm + clearance_mm : 0.0;
   };
   part.anchor_count = 0;
   for (int k = 0; k < model::kAnchorCountMax; ++k) {
