@@ -5,6 +5,7 @@ from dataclasses import dataclass
 PAD_SCENES = ["lone", "low", "medium", "high", "pile", "steep", "buried"]
 CYLINDER_SCENES = ["cyl_loose", "cyl_grid", "cyl_brick"]
 SEVERAL_SCENES = ["medium", "high", "pile"] + CYLINDER_SCENES  # searched for all instances too
+CROWDED_SCENES = ["cyl_grid", "cyl_brick"]  # hold more than SEVERAL
 OTHER_PARTS = ["bracket", "flange", "washer", "strip", "triangle", "plate"]
 OTHER_SCENES = ["medium", "high", "buried"]
 SCENES_WITHOUT = ["absent", "empty"]  # hold no part: every match is wrong
@@ -13,6 +14,7 @@ WORSE_SENSORS = ["noise", "lost", "half"]
 SEEDS = (1000, 1040)
 SEEDS_WITHOUT = (1000, 1200)
 SEVERAL = 20
+MOST = 64  # that a search may return
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ def all_cases(seeds=None):
     cases = []
     for scene in PAD_SCENES + CYLINDER_SCENES:
         part = "cylinder" if scene in CYLINDER_SCENES else "pad"
-        counts = (1, SEVERAL) if scene in SEVERAL_SCENES else (1,)
+        counts = (1,) + (SEVERAL,) * (scene in SEVERAL_SCENES) + (MOST,) * (scene in CROWDED_SCENES)
         cases.append(Case(scene, part, "standard", usual, counts))
     for part in OTHER_PARTS:
         cases += [Case(scene, part, "standard", usual, (1,)) for scene in OTHER_SCENES]

@@ -66,7 +66,8 @@ FirstVerdict judge_first(std::span<const Pose> scan_T_found, std::span<const Tru
   return verdict;
 }
 
-AllVerdict judge_all(std::span<const Pose> scan_T_found, std::span<const Truth> truths, int fold) {
+AllVerdict judge_all(std::span<const Pose> scan_T_found, std::span<const Truth> truths, int fold,
+                     int max_matches) {
   AllVerdict verdict;
   std::vector<bool> is_found(truths.size(), false);
   for (int i = 0; i < static_cast<int>(scan_T_found.size()); ++i) {
@@ -82,8 +83,14 @@ AllVerdict judge_all(std::span<const Pose> scan_T_found, std::span<const Truth> 
   for (int i = 0; i < static_cast<int>(truths.size()); ++i) {
     if (truths[i].visible < kVisibleOfWanted) continue;
     ++verdict.wanted_count;
-    if (!is_found[i]) verdict.missed.push_back(i);
+    if (is_found[i]) {
+      ++verdict.found_count;
+    } else {
+      verdict.missed.push_back(i);
+    }
   }
+  verdict.wanted_count = std::min(verdict.wanted_count, max_matches);
+  if (verdict.found_count >= verdict.wanted_count) verdict.missed.clear();
   return verdict;
 }
 

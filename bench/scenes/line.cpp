@@ -102,6 +102,7 @@ std::string json_line(const Record& record) {
   json["rival"] = trial.result.rival_score;
   json["first"] = first_of(trial.first);
   json["all"] = {{"wanted", trial.all.wanted_count},
+                 {"found", trial.all.found_count},
                  {"missed", trial.all.missed},
                  {"wrong", trial.all.wrong_matches},
                  {"double", trial.all.double_matches}};

@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 sys.dont_write_bytecode = True  # the source tree stays as it is
 
-from cases import SEVERAL, all_cases
+from cases import MOST, SEVERAL, all_cases
 from report import demands, write_report
 
 
@@ -36,7 +36,7 @@ def parse_arguments():
     parser.add_argument("--only", type=parse_list, metavar="SCENES", help="e.g. medium,high")
     parser.add_argument("--parts", type=parse_list, metavar="PARTS", help="e.g. pad,bracket")
     parser.add_argument("--sensors", type=parse_list, metavar="SENSORS", help="standard, noise, lost, half")
-    parser.add_argument("--matches", type=int, choices=[1, SEVERAL], help="only the search for one, or for several")
+    parser.add_argument("--matches", type=int, choices=[1, SEVERAL, MOST], help="only the search for so many")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="processes (2)")
     parser.add_argument("--output", type=Path, default=Path("build/scenes"), metavar="DIR", help="(build/scenes)")
     parser.add_argument("--binary", type=Path, default=Path("build/bench/bin/flatpose_scenes"), metavar="FILE")

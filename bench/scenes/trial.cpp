@@ -49,7 +49,7 @@ Trial run_trial(Searcher& searcher, const Shot& shot, const Taught& taught,
   for (const locate::Match& match : trial.result.found())
     trial.scan_T_found.push_back(match.face_T_object * taught.object_T_part);
   trial.first = judge_first(trial.scan_T_found, shot.truths, taught.fold);
-  trial.all = judge_all(trial.scan_T_found, shot.truths, taught.fold);
+  trial.all = judge_all(trial.scan_T_found, shot.truths, taught.fold, config.max_matches);
   return trial;
 }
 

@@ -23,7 +23,7 @@ std::string cause(const Shot& shot, const std::vector<Pose>& found, bool expects
   Trial trial;
   trial.scan_T_found = found;
   trial.first = judge_first(found, shot.truths, 1);
-  trial.all = judge_all(found, shot.truths, 1);
+  trial.all = judge_all(found, shot.truths, 1, 20);
   return cause_of_first(trial, shot, 1, expects_target);
 }
 

@@ -98,6 +98,8 @@ TEST(Bounds, HoldEachErrorByItself) {
   EXPECT_FALSE(is_within({.turn_deg = 1.01}, kFine));
 }
 
+constexpr int kMany = 20;
+
 /// Three apart; the last is mostly covered.
 std::vector<Truth> three() {
   return {{{turn(10.0), {-150.0, 0.0, 8.0}}, 1.0},
@@ -162,15 +164,27 @@ TEST(FirstAnswer, MayBeMissingAndSoMayTheTarget) {
 
 TEST(AllAnswers, AreRightWhenEachWantedInstanceIsFoundOnce) {
   const AllVerdict verdict =
-      judge_all(std::vector{three()[1].scan_T_part, three()[0].scan_T_part}, three(), 1);
+      judge_all(std::vector{three()[1].scan_T_part, three()[0].scan_T_part}, three(), 1, kMany);
   EXPECT_EQ(verdict.wanted_count, 2);
   EXPECT_TRUE(verdict.missed.empty());
   EXPECT_TRUE(verdict.wrong_matches.empty());
   EXPECT_TRUE(verdict.double_matches.empty());
 }
 
+TEST(AllAnswers, CannotBeMoreThanWereAskedFor) {
+  const std::vector<Pose> one{three()[1].scan_T_part};
+  EXPECT_EQ(judge_all(one, three(), 1, 1).wanted_count, 1);
+  EXPECT_EQ(judge_all(one, three(), 1, 1).found_count, 1);
+  EXPECT_TRUE(judge_all(one, three(), 1, 1).missed.empty());
+  EXPECT_EQ(judge_all(one, three(), 1, 2).wanted_count, 2);
+  EXPECT_EQ(judge_all(one, three(), 1, 2).missed, (std::vector{0}));
+  // What is hardly visible does not stand in for what is.
+  EXPECT_EQ(judge_all(std::vector{three()[2].scan_T_part}, three(), 1, 1).found_count, 0);
+  EXPECT_EQ(judge_all(std::vector{three()[2].scan_T_part}, three(), 1, 1).missed.size(), 2U);
+}
+
 TEST(AllAnswers, MayHoldWhatIsHardlyVisible) {
-  const AllVerdict verdict = judge_all(std::vector{three()[2].scan_T_part}, three(), 1);
+  const AllVerdict verdict = judge_all(std::vector{three()[2].scan_T_part}, three(), 1, kMany);
   EXPECT_TRUE(verdict.wrong_matches.empty());
   EXPECT_EQ(verdict.missed, (std::vector{0, 1}));
 }
@@ -179,24 +193,25 @@ TEST(AllAnswers, AreWrongWhereNoInstanceLies) {
   const std::vector<Pose> found{three()[0].scan_T_part,
                                 displaced(three()[1].scan_T_part, turn(180.0)),
                                 displaced(three()[0].scan_T_part, {}, {0.0, 40.0, 0.0})};
-  const AllVerdict verdict = judge_all(found, three(), 1);
+  const AllVerdict verdict = judge_all(found, three(), 1, kMany);
   EXPECT_EQ(verdict.wrong_matches, (std::vector{1, 2}));
   EXPECT_EQ(verdict.missed, (std::vector{1}));
-  EXPECT_TRUE(judge_all(found, three(), 2).missed.empty());
-  EXPECT_EQ(judge_all(found, {}, 1).wrong_matches, (std::vector{0, 1, 2}));
+  EXPECT_TRUE(judge_all(found, three(), 2, kMany).missed.empty());
+  EXPECT_EQ(judge_all(found, {}, 1, kMany).wrong_matches, (std::vector{0, 1, 2}));
 }
 
 TEST(AllAnswers, AreDoubleOnTheSameInstance) {
   const Pose truth = three()[0].scan_T_part;
   const std::vector<Pose> found{truth, displaced(truth, turn(4.0)), three()[1].scan_T_part,
                                 displaced(truth, {}, {4.0, 0.0, 0.0})};
-  const AllVerdict verdict = judge_all(found, three(), 1);
+  const AllVerdict verdict = judge_all(found, three(), 1, kMany);
   EXPECT_EQ(verdict.double_matches, (std::vector{1, 3}));
   EXPECT_TRUE(verdict.wrong_matches.empty());
   EXPECT_TRUE(verdict.missed.empty());
   // An equivalent pose of a symmetric part is the same place again.
-  EXPECT_EQ(judge_all(std::vector{truth, displaced(truth, turn(90.0))}, three(), 4).double_matches,
-            (std::vector{1}));
+  EXPECT_EQ(
+      judge_all(std::vector{truth, displaced(truth, turn(90.0))}, three(), 4, kMany).double_matches,
+      (std::vector{1}));
 }
 
 }  // namespace
