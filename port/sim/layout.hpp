@@ -54,5 +54,8 @@ void build_cyl_brick(Layout& layout);
 void build_medium(Layout& layout);
 void build_high(Layout& layout);
 void build_pile(Layout& layout);
+void build_absent(Layout& layout);
+void build_steep(Layout& layout);
+void build_buried(Layout& layout);
 
 }  // namespace flatpose::sim

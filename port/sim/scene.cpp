@@ -47,6 +47,9 @@ constexpr Entry kEntries[] = {
     {"medium", "pad", build_medium},
     {"high", "pad", build_high},
     {"pile", "pad", build_pile},
+    {"absent", "pad", build_absent},
+    {"steep", "pad", build_steep},
+    {"buried", "pad", build_buried},
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace flatpose::sim {
 namespace {
 
-constexpr int kStepsMax = 40;
+constexpr int kStepsMax = 12;     // rests that come at all come within seven
 constexpr int kCoarseStride = 4;  // of the rim points, until the lean is about right
 constexpr double kCoarseEnoughMm = 0.5;
 constexpr double kLeanMaxRad = 65.0 * kRadPerDeg;  // no rest comes of it; slopes stay finite
