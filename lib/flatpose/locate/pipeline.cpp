@@ -123,7 +123,8 @@ class Pipeline {
     s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
                                settings_.tilt_radius_px, arena_, work_.tilt);
     if (s != Status::kOk) return s;
-    search::collect_places(work_.tilt, settings_.places, work_.places);
+    s = search::collect_places(work_.tilt, settings_.places, work_.places);
+    if (s != Status::kOk) return s;
     s = search::build_search_images(scene_, settings_.search_images, work_.places.range, arena_,
                                     work_.coarse);
     if (s == Status::kOk) search::set_heights(work_.tilt, work_.coarse, work_.places);

@@ -12,6 +12,11 @@ int slope_bin(double slope) noexcept {
   return static_cast<int>(std::floor(slope / kSlopeBin + 0.5));
 }
 
+bool is_valid(const PlaceConfig& config) noexcept {
+  return config.stride_px >= 1 && config.stride_px <= kStrideMax_px && config.max_tilt_rad >= 0.0 &&
+         config.max_tilt_rad <= kTiltMax_rad;
+}
+
 double slope_limit(double max_tilt_rad) noexcept {
   const auto [s, c] = sin_cos(max_tilt_rad);
   return std::min(s / c, kSlopeBin * kSlopeBinReach);
@@ -28,6 +33,7 @@ class Collector {
   void run() noexcept {
     std::fill(places_.bin.begin(), places_.bin.end(), kNoBin);
     places_.place_count = 0;
+    places_.range = {};
     block_count_ = 0;
     for (int row = 0; row < places_.height; ++row) {
       for (int column = 0; column < places_.width; column += kBlockSize) gate_block(column, row);
@@ -109,13 +115,18 @@ Places take_places(Arena& arena, int width_px, int height_px) noexcept {
   return places;
 }
 
-void collect_places(const TiltField& field, const PlaceConfig& config, Places& places) noexcept {
+Status collect_places(const TiltField& field, const PlaceConfig& config, Places& places) noexcept {
+  if (!is_valid(config)) return Status::kInvalidArgument;
   const Lattice lattice =
       make_lattice(field.rms_mm.width_px, field.rms_mm.height_px, config.stride_px, 1);
+  const std::size_t place_count =
+      static_cast<std::size_t>(lattice.padded_width()) * static_cast<std::size_t>(lattice.height);
+  if (place_count > places.bin.size()) return Status::kShapeMismatch;
   places.width = lattice.width;
   places.height = lattice.height;
   places.padded_width = lattice.padded_width();
   Collector(field, config, places).run();
+  return Status::kOk;
 }
 
 void set_heights(const TiltField& field, const SearchImages& images, Places& places) noexcept {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/status.hpp"
 #include "flatpose/search/lattice.hpp"
 #include "flatpose/search/search_images.hpp"
 #include "flatpose/search/tilt_field.hpp"
@@ -35,9 +36,12 @@ struct PlaceBlock {
   std::int16_t column = 0;  ///< Of the first, a multiple of kBlockSize.
 };
 
+/// Below a right angle, from which on the tangent bounds nothing.
+inline constexpr double kTiltMax_rad = 1.57;
+
 struct PlaceConfig {
-  int stride_px = 1;
-  double max_tilt_rad = 0.8;  ///< Steeper places are no hypotheses; 0..1.57.
+  int stride_px = 1;          ///< 1..kStrideMax_px.
+  double max_tilt_rad = 0.8;  ///< Steeper places are no hypotheses; 0..kTiltMax_rad.
   double planarity_mm = 0.5;  ///< Places whose plane fit leaves more than this are no hypotheses.
 };
 
@@ -67,7 +71,9 @@ struct Places {
 [[nodiscard]] Places take_places(Arena& arena, int width_px, int height_px) noexcept;
 
 /// Gates and groups the cells of the field.  Cost: one pass, linear in cells.
-void collect_places(const TiltField& field, const PlaceConfig& config, Places& places) noexcept;
+/// Fails: kInvalidArgument (a stride or tilt out of its range), kShapeMismatch (places of a smaller
+/// field).
+Status collect_places(const TiltField& field, const PlaceConfig& config, Places& places) noexcept;
 
 /// The planes' heights in the images' units.
 void set_heights(const TiltField& field, const SearchImages& images, Places& places) noexcept;

@@ -28,7 +28,7 @@ Candidate best_candidate(const scene::Built& built, const model::Template& part)
   EXPECT_EQ(halve_heights(built.scene, 1.0, memory.arena, images), Status::kOk);
   EXPECT_EQ(fit_tilt_field(images.filled_mm, images.grid.cell_mm, 2, memory.arena, field),
             Status::kOk);
-  collect_places(field, {}, places);
+  EXPECT_EQ(collect_places(field, {}, places), Status::kOk);
   EXPECT_EQ(build_search_images(built.scene, {}, places.range, memory.arena, images), Status::kOk);
   set_heights(field, images, places);
   std::vector<Candidate> candidates(20);
