@@ -22,13 +22,15 @@ void walk(const Loop& loop, Visit visit) {
   }
 }
 
-/// The higher side of the step at a point of a loop.
+/// The higher side of the step at a point of a loop, looked up a little ahead of it: beside a
+/// corner may be outside on both sides.
 std::optional<double> step_height_mm(const Part& part, Vec2 p, Vec2 along) {
-  constexpr double kHairMm = 0.02;  // over the chord error
-  const Vec2 left = p + kHairMm * Vec2{-along.y, along.x};
-  const Vec2 right = p - kHairMm * Vec2{-along.y, along.x};
-  const auto a = top_height_mm(part, left);
-  const auto b = top_height_mm(part, right);
+  constexpr double kAheadMm = 1e-4;
+  constexpr double kAsideMm = 2e-5;
+  const Vec2 ahead = p + kAheadMm * along;
+  const Vec2 left = kAsideMm * Vec2{-along.y, along.x};
+  const auto a = top_height_mm(part, ahead + left);
+  const auto b = top_height_mm(part, ahead - left);
   if (!a || !b) return a ? a : b;
   return std::max(*a, *b);
 }
