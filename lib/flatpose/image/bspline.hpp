@@ -1,25 +1,21 @@
 #pragma once
-// Cubic B-spline interpolation (Unser 1999; Ingberg 2015, sec. 2.7.1): passes exactly through the
-// pixel values and is twice continuously differentiable.
+// Cubic B-spline with the pixels themselves as coefficients (Ingberg 2015, sec. 2.7.1, without the
+// prefilter of Unser 1999): twice continuously differentiable whatever the pixels are.
 //
 //   f(x, y) = sum_k sum_l c(k, l) b(x - k) b(y - l)                                   (eq. 2.5)
 //
-// The coefficients c come from the pixels by a recursive filter with the pole p = sqrt(3) - 2, once
-// forward and once backward along rows, then along columns (eq. 2.7). The image goes on mirrored
-// about its border cells' centres.
+// It does not pass through the pixels but smooths them: a plane stays as it is, a second
+// derivative f'' lifts the value by f'' / 6 an axis. In return a sample needs the 16 pixels around
+// it and no pass over the image, which may be of bytes. The image goes on mirrored about its border
+// cells' centres.
 
 #include <array>
 #include <cassert>
 
 #include "flatpose/core/image_view.hpp"
-#include "flatpose/core/status.hpp"
 #include "flatpose/image/sample.hpp"
 
 namespace flatpose::image {
-
-/// Turns pixel values into spline coefficients, in place. `image` may be a part of a larger one.
-/// Cost: four passes, linear in cells.  Memory: none.  Thread: reentrant.
-void bspline_prefilter(ImageView<float> image) noexcept;
 
 /// An index reflected about the first and the last cell into [0, size_px).
 [[nodiscard]] inline int mirrored(int index, int size_px) noexcept {
@@ -44,28 +40,35 @@ struct BsplineWeights {
   }
 };
 
+/// The indices of the four pixels around a place between `index` and `index` + 1.
+[[nodiscard]] inline std::array<int, 4> pixels_around(int index, int size_px) noexcept {
+  if (index >= 1 && index + 2 < size_px) return {index - 1, index, index + 1, index + 2};
+  return {mirrored(index - 1, size_px), mirrored(index, size_px), mirrored(index + 1, size_px),
+          mirrored(index + 2, size_px)};
+}
+
 /// Value and gradient of the spline at (x, y); outside the image the nearest border's value with no
 /// slope across it.
-/// Shape: coefficients as bspline_prefilter left them, not empty.  Units: coordinates in cells,
-/// whole numbers at cell centres.  Cost: 16 pixels.  Thread: reentrant.
-[[nodiscard]] inline Sample bspline_sample(ImageView<const float> coefficients, double x,
-                                           double y) noexcept {
-  assert(!coefficients.empty());
-  const ClampedCoordinate cx = clamp_coordinate(x, coefficients.width_px);
-  const ClampedCoordinate cy = clamp_coordinate(y, coefficients.height_px);
+/// Shape: an Image has width_px, height_px, both positive, and (column, row) for a pixel.
+/// Units: coordinates in cells, whole numbers at cell centres.  Cost: 16 pixels.
+/// Thread: reentrant.
+template <class Image>
+[[nodiscard]] Sample bspline_sample(const Image& image, double x, double y) noexcept {
+  assert(image.width_px > 0 && image.height_px > 0);
+  const ClampedCoordinate cx = clamp_coordinate(x, image.width_px);
+  const ClampedCoordinate cy = clamp_coordinate(y, image.height_px);
   const int column = static_cast<int>(cx.at);
   const int row = static_cast<int>(cy.at);
   const BsplineWeights wx(cx.at - column);
   const BsplineWeights wy(cy.at - row);
-  std::array<int, 4> columns;
-  for (int k = 0; k < 4; ++k) columns[k] = mirrored(column - 1 + k, coefficients.width_px);
+  const std::array<int, 4> columns = pixels_around(column, image.width_px);
+  const std::array<int, 4> rows = pixels_around(row, image.height_px);
   Sample sample;
   for (int l = 0; l < 4; ++l) {
-    const float* c = coefficients.row(mirrored(row - 1 + l, coefficients.height_px));
     double value = 0.0;
     double slope = 0.0;
     for (int k = 0; k < 4; ++k) {
-      const double ck = static_cast<double>(c[columns[k]]);
+      const double ck = static_cast<double>(image(columns[k], rows[l]));
       value += wx.value[k] * ck;
       slope += wx.slope[k] * ck;
     }
@@ -79,9 +82,9 @@ struct BsplineWeights {
 }
 
 /// The same as a T: double, or a dual number with its derivatives.
-template <class T>
-[[nodiscard]] T bspline(ImageView<const float> coefficients, const T& x, const T& y) noexcept {
-  return lift(bspline_sample(coefficients, scalar_part(x), scalar_part(y)), x, y);
+template <class Image, class T>
+[[nodiscard]] T bspline(const Image& image, const T& x, const T& y) noexcept {
+  return lift(bspline_sample(image, scalar_part(x), scalar_part(y)), x, y);
 }
 
 }  // namespace flatpose::image

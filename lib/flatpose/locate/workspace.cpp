@@ -42,7 +42,6 @@ std::size_t workspace_required_bytes(const Limits& limits) noexcept {
   with_scratch([&] { image::reserve_fill_scratch(arena, grid.width_px); });
   with_scratch([&] { image::reserve_edge_scratch(arena, grid.width_px, grid.height_px); });
   (void)take_workspace(arena, grid);
-  with_scratch([&] { refine::reserve_fine_scratch(arena, grid); });
   with_scratch([&] { search::reserve_search_scratch(arena, grid); });
   return arena.required_bytes();
 }

@@ -1,12 +1,13 @@
 #pragma once
 // What the refinement reads: the finest level as continuous images (Ingberg 2015, 2.7, 2.11).
 
-#include <array>
+#include <algorithm>
+#include <cstdint>
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
-#include "flatpose/image/direction_channels.hpp"
+#include "flatpose/image/octant_image.hpp"
 #include "flatpose/scene/scene.hpp"
 
 namespace flatpose::refine {
@@ -18,21 +19,34 @@ struct FineImages {
   rectify::Grid grid;
   ImageView<const float> height_mm;  ///< NaN where missing.
   ImageView<const float> filled_mm;
-  image::OctantImages edge_distance_third_px;  ///< Chamfer distance per falling direction.
-  std::array<ImageView<float>, image::kOctantCount>
-      edge_distance_spline;  ///< Its B-spline, in thirds of a cell.
+  image::OctantImage edge_distance_third_px;  ///< Chamfer distance per falling direction.
   ImageView<float> normal_x;
   ImageView<float> normal_y;
 };
 
+/// The distances that the refinement reads in one direction: those of FineImages, bounded.
+struct BoundedDistance {
+  image::OctantChannel distance_third_px;
+  int width_px = 0;
+  int height_px = 0;
+
+  BoundedDistance(const FineImages& images, int octant) noexcept
+      : distance_third_px(images.edge_distance_third_px[octant]),
+        width_px(images.grid.width_px),
+        height_px(images.grid.height_px) {}
+  std::uint8_t operator()(int x, int y) const noexcept {
+    return std::min(distance_third_px(x, y), kEdgeDistanceMax_third_px);
+  }
+};
+
 [[nodiscard]] FineImages take_fine_images(Arena& arena, const rectify::Grid& grid) noexcept;
 
-/// Takes (and leaves taken) the scratch of build_fine_images, also from a measuring arena.
-void reserve_fine_scratch(Arena& arena, const rectify::Grid& grid) noexcept;
-
-/// Fills the images from the scene.  Cost: nine passes over the map a direction.  Fails:
-/// kOutOfMemory.
-[[nodiscard]] Status build_fine_images(const scene::Scene& scene, Arena& scratch,
-                                       FineImages& images) noexcept;
+/// Fills the images from the scene.  Cost: four passes over the map.
+[[nodiscard]] Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept;
+/// The same for callers that still bring scratch, which is not touched.
+[[nodiscard]] inline Status build_fine_images(const scene::Scene& scene, Arena&,
+                                              FineImages& images) noexcept {
+  return build_fine_images(scene, images);
+}
 
 }  // namespace flatpose::refine

@@ -76,8 +76,8 @@ void PoseProblem::add_contour(const Pose& pose, NormalEquations<6>* equations) c
         image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
     const Number column = (q.x - images_.grid.x0_mm) / images_.grid.cell_mm;
     const Number row = (q.y - images_.grid.y0_mm) / images_.grid.cell_mm;
-    const ImageView<const float> spline = images_.edge_distance_spline[octant];
-    equations->add(image::bspline(spline, column, row) * third_mm, weight, loss);
+    const BoundedDistance distance(images_, octant);
+    equations->add(image::bspline(distance, column, row) * third_mm, weight, loss);
   }
 }
 

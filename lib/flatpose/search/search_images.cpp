@@ -80,11 +80,35 @@ Status spread_normals(const SearchImages& images, Arena& scratch) noexcept {
   return Status::kOk;
 }
 
-void lower_to(ImageView<const std::uint8_t> other, ImageView<std::uint8_t> lowest) noexcept {
-  for (int y = 0; y < lowest.height_px; ++y) {
-    const std::uint8_t* from = other.row(y);
-    std::uint8_t* row = lowest.row(y);
-    for (int x = 0; x < lowest.width_px; ++x) row[x] = std::min(row[x], from[x]);
+// Every direction's costs become those of any.
+void forget_directions(const image::OctantImage& costs) noexcept {
+  for (int y = 0; y < costs.cells.height_px; ++y) {
+    image::OctantCell* row = costs.cells.row(y);
+    for (int x = 0; x < costs.cells.width_px; ++x)
+      row[x].of.fill(*std::min_element(row[x].of.begin(), row[x].of.end()));
+  }
+}
+
+// As spread(), for the images of the first `image_count` directions.
+void spread_directions(const image::OctantImage& costs, int image_count,
+                       const SearchImages& images) noexcept {
+  const Lattice& lattice = images.lattice;
+  const int s = lattice.stride_px;
+  const std::size_t image_bytes = lattice.image_bytes();
+  std::fill_n(image_at(images, 0), static_cast<std::size_t>(image_count) * image_bytes,
+              kEdgeCostUnknown);
+  for (int y = 0; y < costs.cells.height_px; ++y) {
+    for (int phase_x = 0; phase_x < s; ++phase_x) {
+      const auto phase = static_cast<std::size_t>(y % s * s + phase_x);
+      const image::OctantCell* source = costs.cells.row(y) + phase_x;
+      std::uint8_t* target =
+          image_at(images, 0) + phase * lattice.phase_bytes() + lattice.byte_of(0, y / s);
+      const int count = (costs.cells.width_px - phase_x + s - 1) / s;
+      for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < image_count; ++k)
+          target[static_cast<std::size_t>(k) * image_bytes + i] = source[i * s].of[k];
+      }
+    }
   }
 }
 
@@ -93,33 +117,16 @@ void lower_to(ImageView<const std::uint8_t> other, ImageView<std::uint8_t> lowes
 Status spread_edge_costs(const scene::Scene& scene, Arena& scratch,
                          const SearchImages& images) noexcept {
   const ArenaScope scope(scratch);
-  const std::span<image::EdgePoint> edges = scratch.take<image::EdgePoint>(scene.edges.size());
-  image::OctantImages masks;
-  image::OctantImages distances;
-  for (auto* set : {&masks, &distances}) {
-    for (auto& image : *set)
-      image = scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
-  }
+  const image::OctantImage costs{
+      scratch.take_image<image::OctantCell>(images.grid.width_px, images.grid.height_px)};
   if (scratch.failed()) return Status::kOutOfMemory;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    edges[i] = scene.edges[i];
-    edges[i].column = static_cast<std::int16_t>(edges[i].column / 2);
-    edges[i].row = static_cast<std::int16_t>(edges[i].row / 2);
-  }
-  if (const Status s = image::draw_direction_channels(edges, {}, masks); s != Status::kOk) return s;
-  if (const Status s = image::chamfer_channels(masks, distances); s != Status::kOk) return s;
-  for (const auto& distance : distances) {
-    for (int y = 0; y < distance.height_px; ++y) {
-      std::uint8_t* row = distance.row(y);
-      for (int x = 0; x < distance.width_px; ++x) row[x] = std::min(row[x], kEdgeCostMax);
-    }
-  }
-  if (!images.config.use_directions) {
-    for (int k = 1; k < image::kOctantCount; ++k) lower_to(distances[k], distances[0]);
-  }
-  const int image_count = images.config.use_directions ? image::kOctantCount : 1;
-  for (int k = 0; k < image_count; ++k)
-    spread(distances[k], images.lattice, kEdgeCostUnknown, image_at(images, k));
+  image::ChannelConfig config;
+  config.edge_cells = 2;
+  config.distance_max_third_px = kEdgeCostMax;
+  if (const Status s = image::edge_distances(scene.edges, config, costs); s != Status::kOk)
+    return s;
+  if (!images.config.use_directions) forget_directions(costs);
+  spread_directions(costs, images.config.use_directions ? image::kOctantCount : 1, images);
   return Status::kOk;
 }
 

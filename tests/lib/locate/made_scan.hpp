@@ -80,7 +80,6 @@ struct MadeScene {
     std::span<image::EdgePoint> edges;
     (void)scene::take_scene(measuring, grid, edges);
     (void)refine::take_fine_images(measuring, grid);
-    refine::reserve_fine_scratch(measuring, grid);
     image::reserve_fill_scratch(measuring, grid.width_px);
     image::reserve_edge_scratch(measuring, grid.width_px, grid.height_px);
     (void)measuring.take<std::byte>(
@@ -92,7 +91,7 @@ struct MadeScene {
     config.pitch_mm = pitch_mm;
     EXPECT_EQ(scene::build_scene(scan, {}, grid, config, arena, scene), Status::kOk);
     fine = refine::take_fine_images(arena, grid);
-    EXPECT_EQ(refine::build_fine_images(scene, arena, fine), Status::kOk);
+    EXPECT_EQ(refine::build_fine_images(scene, fine), Status::kOk);
   }
   MadeScene(const MadeScene&) = delete;
   MadeScene& operator=(const MadeScene&) = delete;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "flatpose/image/bspline.hpp"
 #include "tests/lib/locate/made_scan.hpp"
 #include "tests/lib/locate/simulated.hpp"
 
@@ -55,21 +54,22 @@ double cost_at(const PoseProblem& problem, const Pose& pose) {
   return equations.cost();
 }
 
-TEST(FineImages, SplinePassesThroughTheCappedDistances) {
+TEST(FineImages, DistancesThatTheRefinementReadsAreBounded) {
   const MadeScene made(tilted_scan());
-  int capped_count = 0;
+  int bounded_count = 0;
   for (int k = 0; k < image::kOctantCount; ++k) {
+    const BoundedDistance bounded(made.fine, k);
+    ASSERT_EQ(bounded.width_px, 120);
+    ASSERT_EQ(bounded.height_px, 110);
     for (int y = 0; y < 110; ++y) {
       for (int x = 0; x < 120; ++x) {
         const int distance = made.fine.edge_distance_third_px[k](x, y);
-        const double expected = std::min<int>(distance, kEdgeDistanceMax_third_px);
-        capped_count += distance > kEdgeDistanceMax_third_px ? 1 : 0;
-        const ImageView<const float> spline = made.fine.edge_distance_spline[k];
-        ASSERT_NEAR(image::bspline_sample(spline, x, y).value, expected, 1e-3);
+        ASSERT_EQ(bounded(x, y), std::min<int>(distance, kEdgeDistanceMax_third_px));
+        bounded_count += distance > kEdgeDistanceMax_third_px ? 1 : 0;
       }
     }
   }
-  EXPECT_GT(capped_count, 1000);
+  EXPECT_GT(bounded_count, 1000);
 }
 
 TEST(FineImages, EdgesCountInTheDirectionTheyFallOnly) {
@@ -96,19 +96,6 @@ TEST(FineImages, SharesTheMapAndHasItsNormals) {
   const Vec3 n = kTruth.rotation.column(2);
   EXPECT_NEAR(made.fine.normal_x(60, 55), n.x, 1e-3);
   EXPECT_NEAR(made.fine.normal_y(60, 55), n.y, 1e-3);
-}
-
-TEST(FineImages, ReportsTooLittleScratch) {
-  const MadeScan scan = tilted_scan();
-  MadeScene made(scan);
-  Arena measuring = Arena::measuring();
-  reserve_fine_scratch(measuring, scan.grid());
-  std::vector<std::byte> memory(measuring.required_bytes());
-  Arena enough{std::span(memory)};
-  EXPECT_EQ(build_fine_images(made.scene, enough, made.fine), Status::kOk);
-  EXPECT_EQ(enough.used_bytes(), 0U);
-  Arena little{std::span(memory).first(memory.size() / 2)};
-  EXPECT_EQ(build_fine_images(made.scene, little, made.fine), Status::kOutOfMemory);
 }
 
 TEST(PoseProblem, GradientEqualsDifferencesOfTheCost) {
