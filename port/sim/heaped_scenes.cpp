@@ -11,7 +11,7 @@ namespace flatpose::sim {
 namespace {
 
 constexpr double kShownMin = 0.6;
-constexpr double kQuickSamples = 500.0;
+constexpr int kQuickSamples = 500;
 constexpr double kQuickError = 0.03;  // of a share that so many samples give
 constexpr int kLayoutsTriedMax = 20;
 
@@ -55,8 +55,7 @@ std::vector<Item> others(Layout& layout, int count) {
 }
 
 /// Whether all of the kinds show enough, each by one of its instances.
-bool shows(const Heaping& heaping, const std::vector<Item>& kinds, double samples,
-           double share_min) {
+bool shows(Heaping& heaping, const std::vector<Item>& kinds, int samples, double share_min) {
   return std::all_of(kinds.begin(), kinds.end(), [&](const Item& kind) {
     return heaping.shown(kind, samples, share_min) >= share_min;
   });

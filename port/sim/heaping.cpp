@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "port/sim/underside.hpp"
-#include "port/sim/visible.hpp"
 
 namespace flatpose::sim {
 namespace {
@@ -12,9 +11,13 @@ namespace {
 constexpr double kHeapHeightMaxMm = 130.0;  // what comes to rest higher falls off
 constexpr int kPlacesTriedMax = 60;         // for a part
 
+bool lies_on_face(const Instance& instance) {
+  return instance.scan_T_object.rotation.column(2).z < 0.0;
+}
+
 }  // namespace
 
-Heaping::Heaping(Layout& layout) : layout_(layout) {
+Heaping::Heaping(Layout& layout) : layout_(layout), visible_(heap_.world(), layout.ruler) {
   for (const Instance& fixture : layout.result.fixtures) heap_.add(fixture);
 }
 
@@ -53,17 +56,25 @@ bool Heaping::drop_at(const Item& item, Vec2 place_mm, double turn_rad, const Ju
   return false;
 }
 
-double Heaping::shown(const Item& item, double samples, double enough) const {
+double Heaping::shown(const Item& item, int samples, double enough) {
   double most = 0.0;
   // From the last one, which is the likeliest.
   const auto& instances = layout_.result.instances;
   for (auto i = instances.rbegin(); i != instances.rend() && most < enough; ++i) {
-    const bool upside_down = i->scan_T_object.rotation.column(2).z < 0.0;
-    if (i->part != item.part || upside_down != item.upside_down) continue;
-    const Instance& top = upside_down ? underside(*i) : *i;
-    most = std::max(most, visible_share(heap_.world(), layout_.ruler, top, samples));
+    if (i->part != item.part || lies_on_face(*i) != item.upside_down) continue;
+    most = std::max(most, visible_.of(top_of(*i), samples));
   }
   return most;
+}
+
+/// What of it looks up, as a part of its own; the same one for the same part.
+Instance Heaping::top_of(const Instance& instance) {
+  if (!lies_on_face(instance)) return instance;
+  Instance top = underside(instance);
+  auto& part = undersides_[instance.part];
+  if (!part) part = top.part;
+  top.part = part;
+  return top;
 }
 
 void Heaping::clear() {

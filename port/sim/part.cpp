@@ -47,6 +47,40 @@ std::optional<double> top_height_mm(const Part& part, Vec2 p_mm) noexcept {
   return 0.0;
 }
 
+TopRow::TopRow(const Part& part, double y_mm)
+    : part_(part), outer_(crossings(part.outline.outer, y_mm)) {
+  for (const Loop& hole : part.outline.holes) holes_.push_back(crossings(hole, y_mm));
+  for (const Area& area : part.areas) areas_.push_back(crossings(area.loop, y_mm));
+}
+
+TopRow::Crossings TopRow::crossings(const Loop& loop, double y_mm) {
+  Crossings found;
+  for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
+    const Vec2 a = loop[i];
+    const Vec2 b = loop[j];
+    if ((a.y > y_mm) == (b.y > y_mm)) continue;
+    found.push_back(a.x + (b.x - a.x) * (y_mm - a.y) / (b.y - a.y));
+  }
+  return found;
+}
+
+bool TopRow::is_inside(const Crossings& crossings, double x_mm) noexcept {
+  return std::count_if(crossings.begin(), crossings.end(), [x_mm](double x) { return x_mm < x; }) %
+             2 !=
+         0;
+}
+
+std::optional<double> TopRow::height_mm(double x_mm) const noexcept {
+  if (!is_inside(outer_, x_mm)) return std::nullopt;
+  for (const Crossings& hole : holes_) {
+    if (is_inside(hole, x_mm)) return std::nullopt;
+  }
+  for (std::size_t i = areas_.size(); i-- > 0;) {
+    if (is_inside(areas_[i], x_mm)) return part_.areas[i].height_mm;
+  }
+  return 0.0;
+}
+
 double height_max_mm(const Part& part) noexcept {
   double highest = 0.0;
   for (const Area& area : part.areas) highest = std::max(highest, area.height_mm);

@@ -45,6 +45,22 @@ struct Part {
 [[nodiscard]] bool contains(const Part& part, Vec2 p_mm) noexcept;
 /// Height of the top over the top plane; none where there is no part.
 [[nodiscard]] std::optional<double> top_height_mm(const Part& part, Vec2 p_mm) noexcept;
+/// The same along a line of constant y: the work of each edge is done once, not for every point.
+class TopRow {
+ public:
+  TopRow(const Part& part, double y_mm);
+  [[nodiscard]] std::optional<double> height_mm(double x_mm) const noexcept;
+
+ private:
+  using Crossings = std::vector<double>;  // x of the edges of a loop
+  static Crossings crossings(const Loop& loop, double y_mm);
+  static bool is_inside(const Crossings& crossings, double x_mm) noexcept;
+
+  const Part& part_;
+  Crossings outer_;
+  std::vector<Crossings> holes_;
+  std::vector<Crossings> areas_;
+};
 /// Of the highest area, at least 0.
 [[nodiscard]] double height_max_mm(const Part& part) noexcept;
 /// Of the smallest circle about the origin that holds the outline.

@@ -61,9 +61,10 @@ Vec3 center_of_mass_mm(const Part& part) {
   if (!part.areas.empty()) {
     const int reach = static_cast<int>(std::ceil(radius_mm(part)));
     for (int j = -reach; j < reach; ++j) {
+      const TopRow row(part, j + 0.5);
       for (int i = -reach; i < reach; ++i) {
         const Vec2 p{i + 0.5, j + 0.5};
-        const double height_mm = top_height_mm(part, p).value_or(0.0);
+        const double height_mm = row.height_mm(p.x).value_or(0.0);
         volume_mm3 += height_mm;
         moment = moment + height_mm * Vec3{p.x, p.y, 0.5 * height_mm};
       }

@@ -145,9 +145,9 @@ SimulatedScan scan(const Scene& scene, const SensorConfig& sensor, std::uint64_t
   result.scene = scene.name;
   result.part = scene.part;
   result.seed = seed;
+  VisibleShare visible(world, ruler);
   for (const Instance& instance : scene.instances) {
-    result.instances.push_back(
-        {instance.part->name, instance.scan_T_object, visible_share(world, ruler, instance)});
+    result.instances.push_back({instance.part->name, instance.scan_T_object, visible.of(instance)});
   }
   return result;
 }

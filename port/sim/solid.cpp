@@ -62,9 +62,10 @@ void Solid::build_grid() {
   columns_ = static_cast<int>(std::ceil((high_mm_.x - low_mm_.x) / kCellMm));
   rows_ = static_cast<int>(std::ceil((high_mm_.y - low_mm_.y) / kCellMm));
   for (int row = 0; row < rows_; ++row) {
+    const TopRow middles(*part_, low_mm_.y + (row + 0.5) * kCellMm);
     for (int column = 0; column < columns_; ++column) {
-      const Vec2 middle{low_mm_.x + (column + 0.5) * kCellMm, low_mm_.y + (row + 0.5) * kCellMm};
-      cells_.push_back(top_height_mm(*part_, middle).value_or(kNoPart));
+      const double x_mm = low_mm_.x + (column + 0.5) * kCellMm;
+      cells_.push_back(middles.height_mm(x_mm).value_or(kNoPart));
     }
   }
   row_edges_.resize(rows_);

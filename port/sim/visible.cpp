@@ -1,5 +1,6 @@
 #include "port/sim/visible.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flatpose::sim {
@@ -10,26 +11,38 @@ bool sees(const World& world, const Ruler& ruler, const Vec3& p_mm, const Vec3& 
          !world.blocked(p_mm, ruler.laser_mm()) && !world.blocked(p_mm, ruler.camera_mm());
 }
 
-}  // namespace
-
-double visible_share(const World& world, const Ruler& ruler, const Instance& instance,
-                     double samples) {
-  const Part& part = *instance.part;
+/// A square grid over the top.  Frames: object.
+std::vector<Vec3> top_grid_mm(const Part& part, int samples) {
   const double pitch_mm = std::sqrt(area_mm2(part) / samples);
   const int reach = static_cast<int>(std::ceil(radius_mm(part) / pitch_mm));
-  const Vec3 normal = instance.scan_T_object.rotation.column(2);
-  int all = 0;
-  int seen = 0;
+  std::vector<Vec3> points_mm;
   for (int j = -reach; j < reach; ++j) {
+    const TopRow row(part, (j + 0.5) * pitch_mm);
     for (int i = -reach; i < reach; ++i) {
       const Vec2 p{(i + 0.5) * pitch_mm, (j + 0.5) * pitch_mm};
-      const auto height_mm = top_height_mm(part, p);
-      if (!height_mm) continue;
-      ++all;
-      if (sees(world, ruler, instance.scan_T_object * Vec3{p.x, p.y, *height_mm}, normal)) ++seen;
+      if (const auto height_mm = row.height_mm(p.x)) points_mm.push_back({p.x, p.y, *height_mm});
     }
   }
-  return all > 0 ? static_cast<double>(seen) / all : 0.0;
+  return points_mm;
+}
+
+}  // namespace
+
+double VisibleShare::of(const Instance& instance, int samples) {
+  const std::vector<Vec3>& points_mm = top_points_mm(instance.part, samples);
+  if (points_mm.empty()) return 0.0;
+  const Vec3 normal = instance.scan_T_object.rotation.column(2);
+  const auto seen = std::count_if(points_mm.begin(), points_mm.end(), [&](const Vec3& p_mm) {
+    return sees(world_, ruler_, instance.scan_T_object * p_mm, normal);
+  });
+  return static_cast<double>(seen) / static_cast<double>(points_mm.size());
+}
+
+const std::vector<Vec3>& VisibleShare::top_points_mm(const std::shared_ptr<const Part>& part,
+                                                     int samples) {
+  auto& points_mm = points_mm_[{part, samples}];
+  if (points_mm.empty()) points_mm = top_grid_mm(*part, samples);
+  return points_mm;
 }
 
 }  // namespace flatpose::sim

@@ -61,6 +61,22 @@ TEST(Visible, EndsAtTheBorderOfTheField) {
   EXPECT_NEAR(scan.instances[0].visible, (300.0 * 1290.0 / 1300.0 - 260.0) / 80.0, kTolerance);
 }
 
+TEST(Visible, IsWhatAPartLyingOnItLeavesOpen) {
+  // A plate 5 thick on the half at x > 0, then on the quarter at x > 20: laser and camera look
+  // down from x = 0 and see up to its foot.
+  EXPECT_NEAR(visible_under(box({20, 0, 15}, 40, 80, 5)), 0.5, kTolerance);
+  EXPECT_NEAR(visible_under(box({30, 0, 15}, 20, 80, 5)), 0.75, kTolerance);
+  // On the half at y > 0 it hides from the camera what is nearer to it than 525.2 5 / 1285 = 2.0.
+  const double hidden = kCameraY * 5.0 / 1285.0;
+  EXPECT_NEAR(visible_under(box({0, 20, 15}, 80, 40, 5)), (40.0 - hidden) / 80.0, kTolerance);
+  // On the half at y < 0 nothing is hidden beside it: the laser stands over its edge.
+  EXPECT_NEAR(visible_under(box({0, -20, 15}, 80, 40, 5)), 0.5, kTolerance);
+  // A strip of 20 across the middle, from y = -10 to 10.
+  const double behind = (kCameraY + 10.0) * 5.0 / 1285.0;
+  const double lit = 10.0 * 5.0 / 1285.0;  // the laser's shadow beyond y = 10, by its own angle
+  EXPECT_NEAR(visible_under(box({0, 0, 15}, 80, 20, 5)), (60.0 - behind - lit) / 80.0, kTolerance);
+}
+
 TEST(Visible, IsNothingForATopThatLooksDown) {
   Instance target = box({0, 0, 10}, 80, 80, 10);
   target.scan_T_object = {rotation_from_vector({kPi, 0, 0}), {0, 0, 1}};
