@@ -1,149 +1,146 @@
-// The gates in front of the grid search, its angles, its memory, and arguments that make no sense.
+// The angles of the grid search, its cut-off, its memory, and arguments that make no sense.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "tests/lib/search/slow_search.hpp"
+#include "tests/lib/search/made_ground.hpp"
 
 namespace flatpose::search {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-struct Ground {
-  MadeImages made{20, 16};
+/// Ground with nothing on it, a part, and a search that takes all that costs less than the most.
+struct Ground : MadeGround {
   std::unique_ptr<model::Template> part;
   GridSearchConfig config;
 
-  Ground() {
+  explicit Ground(int width_px = 20, int height_px = 16) : MadeGround(width_px, height_px) {
     std::mt19937 random(1);
     part = random_part(random, 5.0);
+    config.score = {8, 8};
     config.cost_share_max = 1.0;
     config.angle_step_rad = 0.5;
+    made.randomise(random);
   }
-  [[nodiscard]] std::int64_t places() const {
-    return run(made, *part, config).result.hypothesis_count /
-           angle_count(part->symmetry, config.angle_step_rad);
+  [[nodiscard]] std::int64_t searched_places() const {
+    return run(*part, config).result.hypothesis_count / searched_angles(*part, config);
   }
 };
 
 TEST(SearchAngles, ShareTheSectorThatSymmetryLeaves) {
   for (int order = 1; order <= 12; ++order) {
-    const model::Symmetry symmetry{order, 0, 0};
-    EXPECT_NEAR(angle_range_rad(symmetry), 2.0 * kPi / order, 1e-15);
+    const double range_rad = angle_range_rad({order, 0, 0}, {});
+    EXPECT_NEAR(range_rad, 2.0 * kPi / order, 1e-15);
     for (const double step_rad : {0.02, 0.12, 0.25, 1.0, 10.0}) {
-      const int count = angle_count(symmetry, step_rad);
-      EXPECT_LE(angle_range_rad(symmetry) / count, step_rad + 1e-12) << "no coarser than asked";
+      const int count = angle_count(range_rad, step_rad);
+      EXPECT_LE(range_rad / count, step_rad + 1e-12) << "no coarser than asked";
       if (count > 1) {
-        EXPECT_GT(angle_range_rad(symmetry) / (count - 1), step_rad - 1e-12) << "nor finer";
+        EXPECT_GT(range_rad / (count - 1), step_rad - 1e-12) << "nor finer";
       }
     }
   }
-  EXPECT_EQ(angle_count({2, 0, 0}, 0.5), 7);
-  EXPECT_EQ(angle_count({4, 0, 0}, 0.5), 4);
+  EXPECT_EQ(angle_count(kPi, 0.5), 7);
+  EXPECT_EQ(angle_count(kPi / 2.0, 0.5), 4);
+  EXPECT_EQ(angle_count(0.0, 0.01), 1);
 }
 
-TEST(SearchAngles, OfFullSymmetryAreOne) {
-  const model::Symmetry full{model::kFullSymmetry, 0, 0};
-  EXPECT_EQ(angle_range_rad(full), 0.0);
-  EXPECT_EQ(angle_count(full, 0.01), 1);
+TEST(SearchAngles, OfFullSymmetryAreOneAboutTheCentreAndAllAboutAnyOtherAnchor) {
   Ground ground;
-  ground.part->symmetry = full;
-  for (const Candidate& c : run(ground.made, *ground.part, ground.config).candidates) {
-    EXPECT_EQ(c.angle_index, 0);
-  }
+  ground.part->symmetry = {model::kFullSymmetry, 3.0, -2.0};
+  const auto at = [&](float x_mm, float y_mm) {
+    ground.part->anchors[0] = {x_mm, y_mm, 5.0F};
+    return searched_angles(*ground.part, ground.config);
+  };
+  EXPECT_EQ(at(0.0F, 0.0F), 13);
+  EXPECT_EQ(at(3.0F, -2.6F), 13);
+  EXPECT_EQ(at(3.0F, -2.4F), 1) << "within a tenth of its clearance";
+  EXPECT_EQ(at(3.0F, -2.0F), 1);
+  const Found found = ground.run(*ground.part, ground.config);
+  EXPECT_FALSE(found.candidates.empty());
+  for (const Candidate& c : found.candidates) EXPECT_EQ(c.angle_index, 0);
 }
 
 TEST(SearchAngles, AreNeverMoreThanTheLimit) {
   for (const double step_rad : {1e-3, 1e-12, std::numeric_limits<double>::denorm_min()}) {
-    EXPECT_EQ(angle_count({1, 0, 0}, step_rad), kAngleCountMax);
+    EXPECT_EQ(angle_count(2.0 * kPi, step_rad), kAngleCountMax);
   }
+  Ground ground(3, 3);
+  ground.config.angle_step_rad = 1e-9;
+  EXPECT_EQ(ground.run(*ground.part, ground.config).result.hypothesis_count, 9 * kAngleCountMax);
 }
 
-TEST(GridSearch, SearchesPlanarPlacesOnly) {
+TEST(GridSearchLimits, SearchesPlacesOnly) {
   Ground ground;
-  EXPECT_EQ(ground.places(), 20 * 16);
-  ground.made.field.rms_mm(3, 4) = 0.51F;
-  ground.made.field.rms_mm(5, 4) = 0.49F;
-  ground.made.field.rms_mm(6, 4) = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(ground.places(), 20 * 16 - 2);
-  for (const Candidate& c : run(ground.made, *ground.part, ground.config).candidates) {
+  EXPECT_EQ(ground.searched_places(), 20 * 16);
+  ground.field.rms_mm(3, 4) = 0.51F;
+  ground.field.rms_mm(5, 4) = 0.49F;
+  ground.field.rms_mm(6, 4) = std::numeric_limits<float>::quiet_NaN();
+  ground.collect();
+  EXPECT_EQ(ground.searched_places(), 20 * 16 - 2);
+  for (const Candidate& c : ground.run(*ground.part, ground.config).candidates) {
     EXPECT_FALSE(c.row == 4 && (c.column == 3 || c.column == 6));
   }
 }
 
-TEST(GridSearch, WithoutAnyPlanarPlaceFindsNothing) {
+TEST(GridSearchLimits, WithoutAnyPlaceFindsNothing) {
   Ground ground;
-  ground.config.planarity_mm = -1.0;
-  const Found found = run(ground.made, *ground.part, ground.config);
+  ground.collect({.planarity_mm = -1.0});
+  const Found found = ground.run(*ground.part, ground.config);
   EXPECT_EQ(found.status, Status::kOk);
   EXPECT_EQ(found.result.hypothesis_count, 0);
   EXPECT_TRUE(found.candidates.empty());
 }
 
-TEST(GridSearch, LeavesPlacesSteeperThanTheLimitOut) {
+TEST(GridSearchLimits, TakesOnlyHypothesesBelowTheCutOff) {
   Ground ground;
-  for (const double max_tilt_rad : {0.0, 0.2, 0.8, 1.1}) {
-    ground.config.max_tilt_rad = max_tilt_rad;
-    for (const double azimuth_rad : {0.0, 1.0, 2.5, -2.0}) {
-      for (const double factor : {0.98, 1.02}) {
-        const double slope = std::tan(max_tilt_rad) * factor + (factor > 1.0 ? 0.01 : 0.0);
-        ground.made.field.slope_x(7, 7) = static_cast<float>(slope * std::cos(azimuth_rad));
-        ground.made.field.slope_y(7, 7) = static_cast<float>(slope * std::sin(azimuth_rad));
-        EXPECT_EQ(ground.places(), 20 * 16 - (factor > 1.0 ? 1 : 0)) << max_tilt_rad;
-      }
-    }
+  std::size_t previous = std::numeric_limits<std::size_t>::max();
+  for (const double share : {1.0, 0.6, 0.45, 0.3, 0.1, 0.0}) {
+    ground.config.cost_share_max = share;
+    const auto list = ground.run(*ground.part, ground.config).candidates;
+    for (const Candidate& c : list) EXPECT_LT(c.cost_q10, share * 1024);
+    EXPECT_LE(list.size(), previous);
+    previous = list.size();
+  }
+  EXPECT_EQ(previous, 0U) << "nothing costs less than nothing";
+}
+
+// Otherwise a part that is out of reach would cost nothing anywhere.
+TEST(GridSearchLimits, FindsNothingOfAPartThatIsWhollyOutOfReach) {
+  Ground ground;
+  ground.part->anchors[0].x_mm = 1000.0F;
+  const Found found = ground.run(*ground.part, ground.config);
+  EXPECT_EQ(found.status, Status::kOk);
+  EXPECT_TRUE(found.candidates.empty());
+}
+
+TEST(GridSearchLimits, OfAnImageSmallerThanABlockAreNone) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {1, 30}, {30, 1}, {63, 2}, {64, 2}, {65, 2}}) {
+    Ground ground(w, h);
+    EXPECT_EQ(ground.searched_places(), w * h);
+    EXPECT_FALSE(ground.run(*ground.part, ground.config).candidates.empty()) << w << 'x' << h;
   }
 }
 
-TEST(GridSearch, StandsAnySlopeOfTheSurface) {
-  Ground ground;
-  std::mt19937 random(2);
-  ground.config.max_tilt_rad = 1.5;
-  ground.made.for_each([&](int x, int y) {
-    const double slope = std::pow(10.0, uniform(random, -3, 7));
-    const double azimuth_rad = uniform(random, -kPi, kPi);
-    ground.made.field.slope_x(x, y) = static_cast<float>(slope * std::cos(azimuth_rad));
-    ground.made.field.slope_y(x, y) = static_cast<float>(slope * std::sin(azimuth_rad));
-  });
-  EXPECT_EQ(run(ground.made, *ground.part, ground.config).status, Status::kOk);
-}
-
-TEST(GridSearch, StandsAnyHeightOfTheSurface) {
+TEST(GridSearchLimits, StandsAnyHeightOfTheSurface) {
   Ground ground;
   std::mt19937 random(3);
-  ground.config.score.height_tolerance_mm = 0.01;
-  ground.made.for_each([&](int x, int y) {
-    const double height_mm = uniform(random, -2e6, 2e6);
-    ground.made.field.plane_mm(x, y) = static_cast<float>(height_mm);
-    ground.made.images.height_unit(x, y) = height_mm > 0.0 ? 32767 : -32767;
+  ground.field.for_each([&](int x, int y) {
+    ground.field.plane_mm(x, y) = static_cast<float>(uniform(random, -2e6, 2e6));
   });
-  EXPECT_EQ(run(ground.made, *ground.part, ground.config).status, Status::kOk);
+  ground.collect();
+  EXPECT_EQ(ground.run(*ground.part, ground.config).status, Status::kOk);
 }
 
-TEST(GridSearch, TakesPlacesOfItsStrideOnly) {
-  Ground ground;
-  for (const int stride_px : {1, 2, 3, 7, 100}) {
-    ground.config.stride_px = stride_px;
-    const int across = (20 + stride_px - 1) / stride_px;
-    const int down = (16 + stride_px - 1) / stride_px;
-    EXPECT_EQ(ground.places(), across * down);
-    for (const Candidate& c : run(ground.made, *ground.part, ground.config).candidates) {
-      EXPECT_EQ(c.column % stride_px, 0);
-      EXPECT_EQ(c.row % stride_px, 0);
-    }
-  }
-}
-
-TEST(GridSearch, RefusesBadArguments) {
+TEST(GridSearchLimits, RefusesBadArguments) {
   Ground ground;
   Memory scratch(1 << 20);
   std::vector<Candidate> candidates(5);
   const auto status = [&](const GridSearchConfig& config, int anchor_index) {
-    return grid_search(ground.made.images, ground.made.field, *ground.part, anchor_index, config,
-                       scratch.arena, candidates)
+    return grid_search(ground.made.images, ground.field.field, ground.places.places, *ground.part,
+                       anchor_index, config, scratch.arena, candidates)
         .status();
   };
   EXPECT_EQ(status(ground.config, 0), Status::kOk);
@@ -157,43 +154,46 @@ TEST(GridSearch, RefusesBadArguments) {
   for (const double bad : {0.0, -0.1, kNan}) {
     EXPECT_EQ(with(&GridSearchConfig::angle_step_rad, bad), Status::kInvalidArgument) << bad;
   }
-  for (const int bad : {0, -1}) {
-    EXPECT_EQ(with(&GridSearchConfig::stride_px, bad), Status::kInvalidArgument) << bad;
-  }
-  // From a right angle on the tangent has another sign: nothing would bound the slopes.
-  for (const double bad : {-0.1, 1.5708, 1.6, 3.0, 1e9, kNan}) {
-    EXPECT_EQ(with(&GridSearchConfig::max_tilt_rad, bad), Status::kInvalidArgument) << bad;
-  }
   for (const double bad : {-0.1, 1.1, kNan}) {
     EXPECT_EQ(with(&GridSearchConfig::cost_share_max, bad), Status::kInvalidArgument) << bad;
   }
 }
 
-TEST(GridSearch, RefusesAFieldOfAnotherShape) {
-  Ground ground;
-  const MadeImages other(20, 15);
+TEST(GridSearchLimits, RefusesAFieldOrPlacesOfAnotherShape) {
+  const Ground ground;
   Memory scratch(1 << 20);
-  EXPECT_EQ(grid_search(ground.made.images, other.field, *ground.part, 0, ground.config,
-                        scratch.arena, {})
-                .status(),
-            Status::kShapeMismatch);
+  const auto status = [&](const TiltField& field, const Places& places) {
+    return grid_search(ground.made.images, field, places, *ground.part, 0, ground.config,
+                       scratch.arena, {})
+        .status();
+  };
+  const TiltField& field = ground.field.field;
+  EXPECT_EQ(status(field, ground.places.places), Status::kOk);
+  const MadeField other(20, 15);
+  EXPECT_EQ(status(other.field, ground.places.places), Status::kShapeMismatch);
+  EXPECT_EQ(status(field, MadePlaces(other).places), Status::kShapeMismatch);
+  const MadePlaces coarser(ground.field, {.stride_px = 2});
+  EXPECT_EQ(status(field, coarser.places), Status::kShapeMismatch) << "of another lattice";
 }
 
-TEST(GridSearch, RefusesTooLittleScratch) {
-  Ground ground;
+TEST(GridSearchLimits, TheScratchThatIsReservedSufficesExactly) {
+  const Ground ground;
   std::vector<Candidate> candidates(5);
-  const std::size_t enough_bytes = scratch_bytes(ground.made);
-  int refused = 0;
-  for (std::size_t size_bytes = 0; size_bytes <= enough_bytes; size_bytes += 512) {
+  const auto run_in = [&](std::size_t size_bytes) {
     Memory scratch(size_bytes);
-    const auto result = grid_search(ground.made.images, ground.made.field, *ground.part, 0,
-                                    ground.config, scratch.arena, candidates);
-    if (result) continue;
-    EXPECT_EQ(result.status(), Status::kOutOfMemory);
-    EXPECT_EQ(scratch.arena.used_bytes(), 0U);
-    ++refused;
+    // The reserve allows for any address; here it is the best.
+    Arena aligned(std::span(scratch.bytes).subspan(0, size_bytes));
+    const auto result = grid_search(ground.made.images, ground.field.field, ground.places.places,
+                                    *ground.part, 0, ground.config, aligned, candidates);
+    EXPECT_EQ(aligned.used_bytes(), 0U);
+    return result.status();
+  };
+  const std::size_t enough_bytes = scratch_bytes(ground.made.images.grid);
+  EXPECT_EQ(run_in(enough_bytes), Status::kOk);
+  EXPECT_EQ(run_in(enough_bytes - 2 * Arena::kAlignmentBytes), Status::kOutOfMemory);
+  for (std::size_t size_bytes = 0; size_bytes < enough_bytes / 2; size_bytes += 4096) {
+    EXPECT_EQ(run_in(size_bytes), Status::kOutOfMemory);
   }
-  EXPECT_GT(refused, 10);
 }
 
 }  // namespace

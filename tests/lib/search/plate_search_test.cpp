@@ -8,6 +8,7 @@
 #include "flatpose/search/grid_search.hpp"
 #include "tests/lib/scene/made_scene.hpp"
 #include "tests/lib/search/made_parts.hpp"
+#include "tests/lib/search/search_ground.hpp"
 
 namespace flatpose::search {
 namespace {
@@ -18,22 +19,10 @@ struct Floor {
 
 /// The best candidate for a plate of 44 mm x 28 mm in a scan.
 Candidate best_candidate(const scene::Built& built, const model::Template& part) {
-  Memory memory(1 << 23);
-  const rectify::Grid& fine = built.scene.map.grid;
-  SearchImages images = take_search_images(memory.arena, fine);
-  const int width_px = images.grid.width_px;
-  const int height_px = images.grid.height_px;
-  TiltField field = take_tilt_field(memory.arena, width_px, height_px);
-  Places places = take_places(memory.arena, width_px, height_px);
-  EXPECT_EQ(halve_heights(built.scene, 1.0, memory.arena, images), Status::kOk);
-  EXPECT_EQ(fit_tilt_field(images.filled_mm, images.grid.cell_mm, 2, memory.arena, field),
-            Status::kOk);
-  EXPECT_EQ(collect_places(field, {}, places), Status::kOk);
-  EXPECT_EQ(build_search_images(built.scene, {}, places.range, memory.arena, images), Status::kOk);
-  set_heights(field, images, places);
+  SearchGround ground(built.scene, {});
   std::vector<Candidate> candidates(20);
-  const auto result =
-      grid_search(images, field, places, part, 0, GridSearchConfig{}, memory.arena, candidates);
+  const auto result = grid_search(ground.images, ground.field, ground.places, part, 0, {},
+                                  ground.memory.arena, candidates);
   EXPECT_TRUE(result);
   if (!result || result->candidate_count == 0) {
     ADD_FAILURE() << "no candidate";

@@ -1,92 +1,123 @@
 #pragma once
-// Every place, every angle, in full, through the public API: what the grid search must equal on
-// level ground, where no binning of tilts comes between.
+// Every place of every bin, every angle, with the scalar cost, and the local minima of that: what
+// the grid search must give, candidate by candidate.
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <vector>
 
-#include "tests/lib/search/made_images.hpp"
+#include "flatpose/search/grid_search.hpp"
 
 namespace flatpose::search {
 
-struct Hypothesis {
-  std::int32_t cost = 0;
-  int row = 0;
-  int column = 0;
-  int angle = 0;
+class SlowSearch {
+ public:
+  SlowSearch(const SearchImages& images, const TiltField& field, const Places& places,
+             const model::Template& part, const GridSearchConfig& config)
+      : images_(images),
+        field_(field),
+        places_(places),
+        part_(part),
+        config_(config),
+        range_rad_(angle_range_rad(part.symmetry, part.anchors[0])),
+        angles_(angle_count(range_rad_, config.angle_step_rad)) {
+    for (int row = 0; row < places.height; ++row) {
+      for (int column = 0; column < places.width; ++column) {
+        if (places.is_place(column, row)) evaluate(column, row);
+      }
+    }
+  }
 
-  friend auto operator<=>(const Hypothesis&, const Hypothesis&) = default;
-};
+  /// Without their poses; best first.
+  [[nodiscard]] std::vector<Candidate> candidates() const {
+    std::vector<Candidate> all;
+    for (const Best& best : best_) {
+      if (is_local_minimum(best)) all.push_back(candidate(best));
+    }
+    std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+      return std::tie(a.cost_q10, a.row, a.column, a.angle_index) <
+             std::tie(b.cost_q10, b.row, b.column, b.angle_index);
+    });
+    for (Candidate& c : all) c.cost_q10 = share_q10(c);
+    return all;
+  }
+  [[nodiscard]] int angles() const { return angles_; }
 
-inline bool is_planar(const MadeImages& made, const GridSearchConfig& config, int x, int y) {
-  const double slope = std::hypot(made.field.slope_x(x, y), made.field.slope_y(x, y));
-  return made.field.rms_mm(x, y) <= config.planarity_mm && slope <= std::tan(config.max_tilt_rad);
-}
+ private:
+  struct Best {
+    std::int32_t cost;
+    int row, column, angle;
+  };
 
-inline Place place_at(const MadeImages& made, int x, int y) {
-  const double sx = made.field.slope_x(x, y);
-  const double sy = made.field.slope_y(x, y);
-  const Vec3 normal = normalized({-sx, -sy, 1.0});
-  const auto nearest = [](double v) { return static_cast<std::int32_t>(std::floor(v + 0.5)); };
-  const double per_cell_q8 = made.images.grid.cell_mm * kHeightUnitsPerMm * 256.0;
-  return {static_cast<std::int16_t>(x),
-          static_cast<std::int16_t>(y),
-          nearest((made.field.plane_mm(x, y) - made.images.base_mm) * kHeightUnitsPerMm),
-          nearest(sx * per_cell_q8),
-          nearest(sy * per_cell_q8),
-          static_cast<std::int16_t>(nearest(normal.x * kNormalUnits)),
-          static_cast<std::int16_t>(nearest(normal.y * kNormalUnits))};
-}
+  const std::vector<ProjectedTemplate>& turned_to(int bin) {
+    std::vector<ProjectedTemplate>& turned = by_bin_[bin];
+    for (int angle = static_cast<int>(turned.size()); angle < angles_; ++angle)
+      turned.push_back(turned_to(slope_x_of_bin(bin), slope_y_of_bin(bin), angle));
+    return turned;
+  }
+  [[nodiscard]] ProjectedTemplate turned_to(double slope_x, double slope_y, int angle) const {
+    return project(part_, part_.anchors[0], slope_x, slope_y, range_rad_ * angle / angles_, images_,
+                   config_.score);
+  }
 
-/// All hypotheses on level places, dearest last; ties by row, column, angle.
-inline std::vector<Hypothesis> slow_search(const MadeImages& made, const model::Template& part,
-                                           const GridSearchConfig& config) {
-  const int angles = angle_count(part.symmetry, config.angle_step_rad);
-  const ScoreScale scale = score_scale(config.score);
-  std::vector<Hypothesis> all;
-  for (int angle = 0; angle < angles; ++angle) {
-    const double angle_rad = angle_range_rad(part.symmetry) * angle / angles;
-    const ProjectedTemplate t =
-        project(part, part.anchors[0], 0.0, 0.0, angle_rad, made.images.grid.cell_mm, config.score);
-    made.for_each([&](int x, int y) {
-      if (x % config.stride_px != 0 || y % config.stride_px != 0) return;
-      if (!is_planar(made, config, x, y)) return;
-      all.push_back({cost(made.images, t, scale, place_at(made, x, y), 1 << 30), y, x, angle});
+  /// The best of each quarter of the angles, the first of equals, if below the share of the worst.
+  void evaluate(int column, int row) {
+    const std::size_t place = places_.index(column, row);
+    const auto& turned = turned_to(places_.bin[place]);
+    std::int32_t worst = 0;
+    for (const auto& t : turned) worst = std::max(worst, cost_max(images_, t));
+    const auto limit = static_cast<std::int32_t>(worst * config_.cost_share_max);
+    std::vector<Best> best(4, Best{std::min(255, limit), row, column, -1});
+    for (int angle = 0; angle < angles_; ++angle) {
+      Best& so_far = best[static_cast<std::size_t>(4 * angle / angles_)];
+      const std::int32_t now =
+          cost(images_, turned[static_cast<std::size_t>(angle)], column * stride_px(),
+               row * stride_px(), places_.height_unit[place]);
+      if (now < so_far.cost) so_far = {now, row, column, angle};
+    }
+    for (const Best& b : best) {
+      if (b.angle >= 0) best_.push_back(b);
+    }
+  }
+
+  [[nodiscard]] bool is_local_minimum(const Best& best) const {
+    return std::none_of(best_.begin(), best_.end(), [&](const Best& rival) {
+      const int turn = std::abs(rival.angle - best.angle);
+      if (std::abs(rival.row - best.row) > 2 || std::abs(rival.column - best.column) > 2 ||
+          std::min(turn, angles_ - turn) > 2)
+        return false;
+      return std::tie(rival.cost, rival.row, rival.column, rival.angle) <
+             std::tie(best.cost, best.row, best.column, best.angle);
     });
   }
-  std::sort(all.begin(), all.end());
-  return all;
-}
 
-struct Found {
-  Status status = Status::kOk;
-  GridSearchResult result;
-  std::vector<Candidate> candidates;
+  [[nodiscard]] Candidate candidate(const Best& best) const {
+    Candidate c;
+    c.cost_q10 = best.cost;
+    c.angle_index = best.angle;
+    c.column = static_cast<std::int16_t>(best.column * stride_px());
+    c.row = static_cast<std::int16_t>(best.row * stride_px());
+    return c;
+  }
+  /// Of the worst at the place's own tilt, which is not its bin's.
+  [[nodiscard]] std::int32_t share_q10(const Candidate& c) const {
+    const ProjectedTemplate own =
+        turned_to(field_.slope_x(c.column, c.row), field_.slope_y(c.column, c.row), c.angle_index);
+    return c.cost_q10 * 1024 / std::max(1, cost_max(images_, own));
+  }
+  [[nodiscard]] int stride_px() const { return images_.lattice.stride_px; }
+
+  const SearchImages& images_;
+  const TiltField& field_;
+  const Places& places_;
+  const model::Template& part_;
+  const GridSearchConfig& config_;
+  double range_rad_;
+  int angles_;
+  std::map<int, std::vector<ProjectedTemplate>> by_bin_;
+  std::vector<Best> best_;
 };
-
-inline std::size_t scratch_bytes(const MadeImages& made) {
-  rectify::Grid fine = made.images.grid;
-  fine.width_px *= 2;
-  fine.height_px *= 2;
-  Arena measuring = Arena::measuring();
-  reserve_search_scratch(measuring, fine);
-  return measuring.required_bytes();
-}
-
-inline Found run(const MadeImages& made, const model::Template& part,
-                 const GridSearchConfig& config, std::size_t capacity = 200) {
-  Found found;
-  found.candidates.resize(capacity);
-  Memory scratch(scratch_bytes(made));
-  const Result<GridSearchResult> result =
-      grid_search(made.images, made.field, part, 0, config, scratch.arena, found.candidates);
-  EXPECT_EQ(scratch.arena.used_bytes(), 0U) << "the scratch is given back";
-  found.status = result.status();
-  if (result) found.result = *result;
-  found.candidates.resize(static_cast<std::size_t>(found.result.candidate_count));
-  return found;
-}
 
 }  // namespace flatpose::search
