@@ -91,8 +91,7 @@ void draw_truths(Sheet& sheet, const Shot& shot) {
   for (const Truth& truth : shot.truths) {
     const bool counts = truth.visible >= kVisibleOfTarget;
     sheet.outline(truth.scan_T_part, kTruth, counts ? 3.0 : 1.0);
-    sheet.label(truth.scan_T_part, formatted("T%d  visible %.2f", number++, truth.visible), kTruth,
-                0);
+    sheet.label(truth.scan_T_part, formatted("T%d  %.2f", number++, truth.visible), kTruth, 0);
   }
 }
 

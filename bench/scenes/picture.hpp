@@ -1,6 +1,7 @@
 #pragma once
 // A failure drawn: the shaded height map, every instance of the part as it truly lies (green; thin
-// where it is not half visible), every match (orange when right, else red) with its score.
+// where it is not half visible) with its visible share, every match (orange when right, else red)
+// with its score.
 
 #include <cstddef>
 #include <string>
