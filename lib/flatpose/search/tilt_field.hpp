@@ -25,11 +25,12 @@ struct TiltField {
 
 [[nodiscard]] TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept;
 
-/// Fits a plane around every cell of a filled height map.
-/// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell.  Memory: `scratch` takes
-/// three doubles a cell. Fails: kShapeMismatch, kInvalidArgument (radius
-/// outside 1..kTiltWindowRadiusMax_px), kOutOfMemory.  Thread: reentrant.
+/// Fits a plane around every cell of a filled height map whose column and row are multiples of
+/// `stride_px`; other cells of the field stay as they are.
+/// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell fitted.  Memory: of `scratch` some
+/// 6r + 8 rows of doubles.  Fails: kShapeMismatch, kInvalidArgument (radius outside
+/// 1..kTiltWindowRadiusMax_px, stride below 1), kOutOfMemory.  Thread: reentrant.
 [[nodiscard]] Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
-                                    Arena& scratch, TiltField& field) noexcept;
+                                    Arena& scratch, TiltField& field, int stride_px = 1) noexcept;
 
 }  // namespace flatpose::search

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 
@@ -24,6 +26,10 @@ struct Fit {
     EXPECT_EQ(memory.arena.used_bytes(), used_bytes) << "the scratch is given back";
   }
 };
+
+std::array<ImageView<float>, 4> images_of(const TiltField& field) {
+  return {field.slope_x, field.slope_y, field.plane_mm, field.rms_mm};
+}
 
 bool has_window(const image::Image<float>& map, int x, int y, int r) {
   return x >= r && y >= r && x < map.width() - r && y < map.height() - r;
@@ -139,6 +145,37 @@ TEST(TiltField, OfAMapSmallerThanTheWindowIsAllNaN) {
       for (int x = 0; x < w; ++x) EXPECT_TRUE(std::isnan(fit.field.rms_mm(x, y)));
     }
   }
+}
+
+TEST(TiltField, WithAStrideFitsItsCellsAsBeforeAndTouchesNoOther) {
+  const image::Image<float> map = image::random_image(31, 29, 8);
+  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  for (int stride_px = 1; stride_px <= 5; ++stride_px) {
+    for (const int r : {1, 4, 7}) {
+      const Fit whole(map, 0.7, r);
+      Fit some(map, 0.7, r);
+      constexpr float kUntouched = 1234.5F;
+      for (const auto& image : images_of(some.field)) {
+        for (int y = 0; y < map.height(); ++y) std::fill_n(image.row(y), map.width(), kUntouched);
+      }
+      ASSERT_EQ(fit_tilt_field(map.view(), 0.7, r, some.memory.arena, some.field, stride_px),
+                Status::kOk);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const ImageView<float> expected = images_of(whole.field)[i];
+        const ImageView<float> image = images_of(some.field)[i];
+        for (int y = 0; y < map.height(); ++y) {
+          for (int x = 0; x < map.width(); ++x) {
+            const bool fitted = x % stride_px == 0 && y % stride_px == 0;
+            ASSERT_EQ(bits(image(x, y)), bits(fitted ? expected(x, y) : kUntouched))
+                << stride_px << " image " << i << " at " << x << ' ' << y;
+          }
+        }
+      }
+    }
+  }
+  Fit fit(map, 1.0, 2);
+  EXPECT_EQ(fit_tilt_field(map.view(), 1.0, 2, fit.memory.arena, fit.field, 0),
+            Status::kInvalidArgument);
 }
 
 TEST(TiltField, OfAMapWithoutCellsIsNothing) {
