@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/image/crease.hpp"
+#include "flatpose/image/glance.hpp"
 #include "flatpose/image/hysteresis.hpp"
 #include "flatpose/image/jump.hpp"
 #include "flatpose/image/slope_field.hpp"
@@ -124,22 +124,6 @@ std::uint8_t judge(const SlopeField& f, const Thresholds& t, int x, int y,
       return marked(EdgeKind::kCrease, turn_tan >= t.crease_high_tan);
   }
   return 0;
-}
-
-// Calls body(x) for each nonzero byte of a row, eight at a glance.
-template <class Body>
-void for_each_set(const std::uint8_t* row, int width_px, const Body& body) noexcept {
-  constexpr int kGlance = 8;
-  int x = 0;
-  while (x < width_px) {
-    std::uint64_t glance = 1;
-    if (x + kGlance <= width_px) std::memcpy(&glance, row + x, kGlance);
-    const int end = std::min(x + kGlance, width_px);
-    if (glance == 0) x = end;
-    for (; x < end; ++x) {
-      if (row[x] != 0) body(x);
-    }
-  }
 }
 
 void mark_edges(const SlopeField& f, const Thresholds& t, ImageView<std::uint8_t> marks) noexcept {

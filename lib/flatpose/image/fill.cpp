@@ -1,57 +1,92 @@
 #include "flatpose/image/fill.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "flatpose/image/glance.hpp"
 
 namespace flatpose::image {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-// Fills a row from above and from the left; returns whether a cell was missing. `carried` holds the
-// last valid height of every column, `lowest` that of the map so far.
-bool fill_forward(const float* height_mm, int width_px, float* carried, float* filled_mm,
-                  std::uint8_t* missing, float& lowest_mm) noexcept {
-  int missing_count = 0;
-  float lowest = lowest_mm;
+// Marks what is missing; returns whether anything is.
+bool mark_missing(const float* __restrict height_mm, int width_px,
+                  std::uint8_t* __restrict missing) noexcept {
+  std::uint8_t any = 0;
   for (int x = 0; x < width_px; ++x) {
-    const float z = height_mm[x];
-    const bool valid = std::fabs(z) < kNothing;  // false for NaN too
-    const float kept = valid ? z : carried[x];
-    carried[x] = kept;
-    filled_mm[x] = kept;
-    missing[x] = valid ? 0 : 1;
-    missing_count += valid ? 0 : 1;
-    lowest = valid && z < lowest ? z : lowest;
+    const auto mark = static_cast<std::uint8_t>(std::fabs(height_mm[x]) < kNothing ? 0 : 1);
+    missing[x] = mark;  // NaN too
+    any |= mark;
   }
-  lowest_mm = lowest;
-  if (missing_count == 0) return false;
-  float left = kNothing;
-  for (int x = 0; x < width_px; ++x) {
-    left = missing[x] != 0 ? left : filled_mm[x];
-    filled_mm[x] = std::min(filled_mm[x], left);
-  }
-  return true;
+  return any != 0;
 }
 
-// The same from below and from the right, and from nowhere.
-void fill_backward(int width_px, float* carried, float* filled_mm, const std::uint8_t* missing,
-                   float lowest_mm) noexcept {
-  int missing_count = 0;
+// Missing cells take what is carried; what is there is carried on.
+void carry_down(const std::uint8_t* __restrict missing, int width_px, float* __restrict carried,
+                float* __restrict filled_mm) noexcept {
   for (int x = 0; x < width_px; ++x) {
     const float kept = missing[x] != 0 ? carried[x] : filled_mm[x];
     carried[x] = kept;
-    filled_mm[x] = std::min(filled_mm[x], kept);
-    missing_count += missing[x];
+    filled_mm[x] = kept;
   }
-  if (missing_count == 0) return;
-  float right = kNothing;
-  for (int x = width_px - 1; x >= 0; --x) {
-    right = missing[x] != 0 ? right : filled_mm[x];
-    const float z = std::min(filled_mm[x], right);
-    filled_mm[x] = z < kNothing ? z : lowest_mm;
+}
+
+// Missing cells, which hold what lies above, take the lowest of that, their run's neighbours and
+// what is carried up. Returns whether one is left with nothing.
+bool take_lowest(const std::uint8_t* missing, int width_px, const float* carried,
+                 float* filled_mm) noexcept {
+  bool nothing_left = false;
+  for_each_run(missing, width_px, [&](int begin, int end) {
+    const float left = begin > 0 ? filled_mm[begin - 1] : kNothing;
+    const float right = end < width_px ? filled_mm[end] : kNothing;
+    for (int x = begin; x < end; ++x) {
+      filled_mm[x] = std::min(std::min(std::min(filled_mm[x], left), carried[x]), right);
+      nothing_left |= filled_mm[x] == kNothing;
+    }
+  });
+  return nothing_left;
+}
+
+void carry_up(const std::uint8_t* __restrict missing, int width_px,
+              const float* __restrict filled_mm, float* __restrict carried) noexcept {
+  for (int x = 0; x < width_px; ++x) {
+    const float before = carried[x];  // read in any case: no branch
+    const float here = filled_mm[x];
+    carried[x] = missing[x] != 0 ? before : here;
   }
+}
+
+float lowest_of(ImageView<const float> image) noexcept {
+  constexpr int kLanes = 16;
+  std::array<float, kLanes> lowest;
+  lowest.fill(kNothing);
+  const auto take = [](float& low, float z) { low = z < low ? z : low; };
+  for (int y = 0; y < image.height_px; ++y) {
+    const float* row = image.row(y);
+    int x = 0;
+    for (; x + kLanes <= image.width_px; x += kLanes) {
+      for (int k = 0; k < kLanes; ++k) take(lowest[k], row[x + k]);
+    }
+    for (; x < image.width_px; ++x) take(lowest[0], row[x]);
+  }
+  return *std::min_element(lowest.begin(), lowest.end());
+}
+
+// What nothing valid is in line with takes the lowest height there is. False when there is none.
+bool take_floor(ImageView<const std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+  const float lowest_mm = lowest_of(filled_mm);
+  const bool found = lowest_mm < kNothing;
+  const float floor_mm = found ? lowest_mm : 0.0F;
+  for (int y = 0; y < filled_mm.height_px; ++y) {
+    for_each_set(missing.row(y), missing.width_px, [&](int x) {
+      float& z = filled_mm.row(y)[x];
+      z = z < kNothing ? z : floor_mm;
+    });
+  }
+  return found;
 }
 
 }  // namespace
@@ -72,20 +107,21 @@ Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm
   const std::span<float> carried = scratch.take<float>(static_cast<std::size_t>(w));
   if (carried.empty()) return Status::kOutOfMemory;
 
-  float lowest_mm = kNothing;
   bool any_missing = false;
   std::fill(carried.begin(), carried.end(), kNothing);
   for (int y = 0; y < h; ++y) {
-    any_missing |= fill_forward(height_mm.row(y), w, carried.data(), filled_mm.row(y),
-                                missing.row(y), lowest_mm);
+    any_missing |= mark_missing(height_mm.row(y), w, missing.row(y));
+    if (filled_mm.row(y) != height_mm.row(y)) std::copy_n(height_mm.row(y), w, filled_mm.row(y));
+    carry_down(missing.row(y), w, carried.data(), filled_mm.row(y));
   }
   if (!any_missing) return Status::kOk;
-  const bool all_missing = lowest_mm == kNothing;
-  if (all_missing) lowest_mm = 0.0F;
+  bool nothing_left = false;
   std::fill(carried.begin(), carried.end(), kNothing);
   for (int y = h - 1; y >= 0; --y) {
-    fill_backward(w, carried.data(), filled_mm.row(y), missing.row(y), lowest_mm);
+    nothing_left |= take_lowest(missing.row(y), w, carried.data(), filled_mm.row(y));
+    carry_up(missing.row(y), w, filled_mm.row(y), carried.data());
   }
+  const bool all_missing = nothing_left && !take_floor(missing, filled_mm);
   return all_missing ? Status::kTooFewPoints : Status::kOk;
 }
 
