@@ -19,15 +19,13 @@ constexpr std::uint8_t kMaybeJump = 1;
 constexpr std::uint8_t kMaybeCrease = 2;
 
 struct EdgeScratch {
-  ImageView<float> slope_x;
-  ImageView<float> slope_y;
+  ImageView<Vec2f> slope;
   std::span<std::int32_t> stack;
 };
 
 EdgeScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
   EdgeScratch s;
-  s.slope_x = arena.take_image<float>(width_px, height_px);
-  s.slope_y = arena.take_image<float>(width_px, height_px);
+  s.slope = arena.take_image<Vec2f>(width_px, height_px);
   s.stack = arena.take<std::int32_t>(static_cast<std::size_t>(width_px) *
                                      static_cast<std::size_t>(height_px));
   return s;
@@ -49,16 +47,15 @@ float tangent(float angle_rad) noexcept {
 
 // A row of slopes with those three (jumps) or two (creases) cells away.
 struct SlopeRows {
-  const float* x;
-  const float* y;
-  const float* y_above;
-  const float* y_below;
+  const Vec2f* here;
+  const Vec2f* above;
+  const Vec2f* below;
 };
 
 SlopeRows rows_at(const SlopeField& f, int y, int reach) noexcept {
-  const int last = f.slope_x.height_px - 2;
-  return {f.slope_x.row(y), f.slope_y.row(y), f.slope_y.row(std::max(1, y - reach)),
-          f.slope_y.row(std::min(last, y + reach))};
+  const int last = f.slope.height_px - 2;
+  return {f.slope.row(y), f.slope.row(std::max(1, y - reach)),
+          f.slope.row(std::min(last, y + reach))};
 }
 
 // Marks the cells of a row at which `test(x, left, right)` holds; left and right are `reach` cells
@@ -86,9 +83,9 @@ void mark_jumps(const SlopeField& f, int y, float jump_low_mm, std::uint8_t* mar
   const auto agreed = [](float a, float b) {
     return std::max(0.0F, std::min(a, b)) + std::min(0.0F, std::max(a, b));
   };
-  mark_row(f.slope_x.width_px, kBeside_px, kMaybeJump, marks, [=](int x, int left, int right) {
-    const float rest_x = r.x[x] - agreed(r.x[left], r.x[right]);
-    const float rest_y = r.y[x] - agreed(r.y_above[x], r.y_below[x]);
+  mark_row(f.slope.width_px, kBeside_px, kMaybeJump, marks, [=](int x, int left, int right) {
+    const float rest_x = r.here[x].x - agreed(r.here[left].x, r.here[right].x);
+    const float rest_y = r.here[x].y - agreed(r.above[x].y, r.below[x].y);
     return rest_x * rest_x + rest_y * rest_y >= least_squared;
   });
 }
@@ -97,11 +94,10 @@ void mark_jumps(const SlopeField& f, int y, float jump_low_mm, std::uint8_t* mar
 void mark_creases(const SlopeField& f, int y, float turn_low, std::uint8_t* marks) noexcept {
   const SlopeRows r = rows_at(f, y, kCreaseReach_px);
   const float least = 0.5F * turn_low;
-  mark_row(f.slope_x.width_px, kCreaseReach_px, kMaybeCrease, marks,
-           [=](int x, int left, int right) {
-             return std::max(std::fabs(r.x[right] - r.x[left]),
-                             std::fabs(r.y_below[x] - r.y_above[x])) >= least;
-           });
+  mark_row(f.slope.width_px, kCreaseReach_px, kMaybeCrease, marks, [=](int x, int left, int right) {
+    return std::max(std::fabs(r.here[right].x - r.here[left].x),
+                    std::fabs(r.below[x].y - r.above[x].y)) >= least;
+  });
 }
 
 std::uint8_t marked(EdgeKind kind, bool strong) noexcept {
@@ -198,9 +194,9 @@ Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::
   const EdgeScratch s = lay_out(scratch, filled_mm.width_px, filled_mm.height_px);
   if (s.stack.empty()) return Status::kOutOfMemory;
 
-  const Status status = sobel(filled_mm, s.slope_x, s.slope_y);
+  const Status status = sobel(filled_mm, s.slope);
   if (status != Status::kOk) return status;
-  const SlopeField field{filled_mm, missing, s.slope_x, s.slope_y};
+  const SlopeField field{filled_mm, missing, s.slope};
   const Thresholds thresholds{config.jump_low_mm,
                               config.jump_high_mm,
                               tangent(config.crease_low_rad),

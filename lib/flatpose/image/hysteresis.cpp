@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "flatpose/image/edge.hpp"
+#include "flatpose/image/glance.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -52,9 +53,9 @@ class Flood {
 void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack) noexcept {
   Flood flood(marks, stack);
   for (int y = 0; y < marks.height_px; ++y) {
-    for (int x = 0; x < marks.width_px; ++x) {
+    for_each_set(marks.row(y), marks.width_px, [&](int x) {
       if ((marks(x, y) & kStrongMark) != 0) flood.keep(x, y);
-    }
+    });
   }
   for (int y = 0; y < marks.height_px; ++y) {
     std::uint8_t* row = marks.row(y);

@@ -21,24 +21,27 @@ struct Ridge {
   bool found = false;
 };
 
+// smaller_if_agreed axis by axis, without a branch: which side is steeper is anybody's guess.
 Vec2f agreed(Vec2f a, Vec2f b) noexcept {
-  return {smaller_if_agreed(a.x, b.x), smaller_if_agreed(a.y, b.y)};
+  const Float2 p = {a.x, a.y};
+  const Float2 q = {b.x, b.y};
+  const Float2 smaller = absolute(p) < absolute(q) ? p : q;
+  return unpacked(p * q > 0.0F ? smaller : Float2{});
 }
 
 Vec2f cell_slope(const SlopeField& f, int column, int row) noexcept {
-  const int x = std::clamp(column, 1, f.slope_x.width_px - 2);
-  const int y = std::clamp(row, 1, f.slope_x.height_px - 2);
-  return {f.slope_x(x, y), f.slope_y(x, y)};
+  const int x = std::clamp(column, 1, f.slope.width_px - 2);
+  const int y = std::clamp(row, 1, f.slope.height_px - 2);
+  return f.slope(x, y);
 }
 
 // The direction of the jump at a cell, the surface's own slope taken off.
 Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept {
   Ridge ridge{{static_cast<float>(column), static_cast<float>(row)}, {}, {}, false};
   const Vec2f here = cell_slope(f, column, row);
-  ridge.surface_slope = {smaller_if_agreed(cell_slope(f, column - kBeside_px, row).x,
-                                           cell_slope(f, column + kBeside_px, row).x),
-                         smaller_if_agreed(cell_slope(f, column, row - kBeside_px).y,
-                                           cell_slope(f, column, row + kBeside_px).y)};
+  ridge.surface_slope = agreed(
+      {cell_slope(f, column - kBeside_px, row).x, cell_slope(f, column, row - kBeside_px).y},
+      {cell_slope(f, column + kBeside_px, row).x, cell_slope(f, column, row + kBeside_px).y});
   for (int round = 0; round < 2; ++round) {
     const Vec2f rest = here - ridge.surface_slope;
     const float length = norm(rest);
@@ -96,22 +99,45 @@ float top_of_parabola(float before, float here, float after) noexcept {
   return std::clamp(0.5F * (before - after) / bend, -1.0F, 1.0F);
 }
 
+constexpr int kBell_px = 4;
+constexpr std::array<float, 2 * kBell_px + 1> kBell = {1, 2, 3, 4, 5, 4, 3, 2, 1};
+
+// Adds a row of the bell: of the nine falls those that point with the ridge. The others add
+// nothing, which changes no bit and needs no branch.
+Float2 add_bell_row(const Vec2f* slopes, float weight, Float2 surface_slope, Float2 ridge_fall,
+                    float least, Float2 sum) noexcept {
+  for (std::size_t i = 0; i < kBell.size(); ++i) {
+    const Float2 fall = surface_slope - load(slopes + i);
+    const Float2 product = fall * ridge_fall;
+    const Float2 with_ridge = product + __builtin_shufflevector(product, product, 1, 0);
+    const Float2 part = (kBell[i] * weight) * fall;
+    sum += with_ridge >= least ? part : Float2{};
+  }
+  return sum;
+}
+
 // Sum of the slopes around a place that point with the ridge, weighted by a bell: the direction of
 // the contour along some cells of it.
 Vec2f mean_fall(const SlopeField& f, const Ridge& r, int column, int row) noexcept {
   const float least = 0.25F * dot(r.surface_slope - f.slope_at(r.at), r.fall);
-  constexpr int kReach_px = 4;
-  constexpr std::array<float, 2 * kReach_px + 1> kBell = {1, 2, 3, 4, 5, 4, 3, 2, 1};
-  Vec2f sum;
-  for (int dy = -kReach_px; dy <= kReach_px; ++dy) {
-    for (int dx = -kReach_px; dx <= kReach_px; ++dx) {
-      const Vec2f fall = r.surface_slope - cell_slope(f, column + dx, row + dy);
-      if (!(dot(fall, r.fall) >= least)) continue;
-      sum = sum + (kBell[dx + kReach_px] * kBell[dy + kReach_px]) * fall;
+  const Float2 surface_slope = {r.surface_slope.x, r.surface_slope.y};
+  const Float2 ridge_fall = {r.fall.x, r.fall.y};
+  const bool is_inside = column > kBell_px && column + kBell_px + 1 < f.slope.width_px;
+  Float2 sum{};
+  for (int dy = -kBell_px; dy <= kBell_px; ++dy) {
+    const int y = std::clamp(row + dy, 1, f.slope.height_px - 2);
+    std::array<Vec2f, kBell.size()> at_border;
+    const Vec2f* slopes = f.slope.row(y) + column - kBell_px;
+    if (!is_inside) {
+      for (int dx = -kBell_px; dx <= kBell_px; ++dx)
+        at_border[dx + kBell_px] = cell_slope(f, column + dx, y);
+      slopes = at_border.data();
     }
+    sum = add_bell_row(slopes, kBell[dy + kBell_px], surface_slope, ridge_fall, least, sum);
   }
-  const float length = norm(sum);
-  return length > 0.0F && length < kFinite ? (1.0F / length) * sum : r.fall;
+  const Vec2f total = unpacked(sum);
+  const float length = norm(total);
+  return length > 0.0F && length < kFinite ? (1.0F / length) * total : r.fall;
 }
 
 }  // namespace

@@ -6,20 +6,9 @@
 #include <cstdint>
 
 #include "flatpose/core/image_view.hpp"
+#include "flatpose/image/vec2f.hpp"
 
 namespace flatpose::image {
-
-struct Vec2f {
-  float x = 0.0F;
-  float y = 0.0F;
-
-  friend Vec2f operator+(Vec2f a, Vec2f b) noexcept { return {a.x + b.x, a.y + b.y}; }
-  friend Vec2f operator-(Vec2f a, Vec2f b) noexcept { return {a.x - b.x, a.y - b.y}; }
-  friend Vec2f operator*(float s, Vec2f a) noexcept { return {s * a.x, s * a.y}; }
-};
-[[nodiscard]] inline float dot(Vec2f a, Vec2f b) noexcept { return a.x * b.x + a.y * b.y; }
-[[nodiscard]] inline float norm(Vec2f a) noexcept { return std::sqrt(dot(a, a)); }
-[[nodiscard]] inline Vec2f quarter_turn(Vec2f a) noexcept { return {-a.y, a.x}; }
 
 /// The one nearer to zero when both have one sign, else zero (also when one is NaN).
 [[nodiscard]] inline float smaller_if_agreed(float a, float b) noexcept {
@@ -28,20 +17,39 @@ struct Vec2f {
 }
 
 /// Views of one size. Slopes are Sobel's, in mm per cell.
-struct SlopeField {
+class SlopeField {
+ public:
+  SlopeField(ImageView<const float> height_mm_, ImageView<const std::uint8_t> missing_,
+             ImageView<const Vec2f> slope_) noexcept
+      : height_mm(height_mm_),
+        missing(missing_),
+        slope(slope_),
+        last_{last(height_mm.width_px, 0), last(height_mm.height_px, 0)},
+        last_inner_{last(height_mm.width_px, 1), last(height_mm.height_px, 1)} {}
+
   ImageView<const float> height_mm;
   ImageView<const std::uint8_t> missing;
-  ImageView<const float> slope_x;
-  ImageView<const float> slope_y;
+  ImageView<const Vec2f> slope;
 
   /// Bilinear slope; places outside the ring of border cells, where Sobel is wrong, are moved in.
   [[nodiscard]] Vec2f slope_at(Vec2f p) const noexcept {
-    const Place at = place(p, 1);
-    return {mix(slope_x, at), mix(slope_y, at)};
+    const Place at(p, Float2{1.0F, 1.0F}, last_inner_);
+    const Vec2f* top = slope.row(at.row) + at.column;
+    const Vec2f* bottom = top + slope.stride_px;
+    const Float2 a = load(top) + at.u * (load(top + 1) - load(top));
+    const Float2 b = load(bottom) + at.u * (load(bottom + 1) - load(bottom));
+    return unpacked(a + at.v * (b - a));
   }
-  [[nodiscard]] float height_at(Vec2f p) const noexcept { return mix(height_mm, place(p, 0)); }
+  [[nodiscard]] float height_at(Vec2f p) const noexcept {
+    const Place at(p, Float2{}, last_);
+    const float* top = height_mm.row(at.row) + at.column;
+    const float* bottom = top + height_mm.stride_px;
+    const float a = top[0] + at.u * (top[1] - top[0]);
+    const float b = bottom[0] + at.u * (bottom[1] - bottom[0]);
+    return a + at.v * (b - a);
+  }
   [[nodiscard]] bool missing_at(Vec2f p) const noexcept {
-    const Place at = place(p, 0);
+    const Place at(p, Float2{}, last_);
     return missing(at.column + (at.u >= 0.5F ? 1 : 0), at.row + (at.v >= 0.5F ? 1 : 0)) != 0;
   }
 
@@ -58,33 +66,30 @@ struct SlopeField {
   }
 
  private:
+  /// A place's cell and where in it; between `low` and `high`, NaN at `low`.
   struct Place {
     int column;
     int row;
     float u;
     float v;
+
+    Place(Vec2f p, Float2 low, Float2 high) noexcept {
+      const Float2 free = {p.x, p.y};
+      const Float2 above = free > low ? free : low;
+      const Float2 at = above < high ? above : high;
+      const Int2 cell = __builtin_convertvector(at, Int2);
+      const Float2 rest = at - __builtin_convertvector(cell, Float2);
+      column = cell[0], row = cell[1];
+      u = rest[0], v = rest[1];
+    }
   };
-  static float clamp(float x, int margin, int size_px) noexcept {
-    const auto low = static_cast<float>(margin);
-    // Just below the last cell, so that its right neighbour exists; NaN goes to `low`.
-    const float high = static_cast<float>(size_px - 1 - margin) * (1.0F - 1e-6F);
-    const float above = x > low ? x : low;
-    return above < high ? above : high;
+  // Just below the last cell, so that its right neighbour exists.
+  static float last(int size_px, int margin) noexcept {
+    return static_cast<float>(size_px - 1 - margin) * (1.0F - 1e-6F);
   }
-  [[nodiscard]] Place place(Vec2f p, int margin) const noexcept {
-    const float x = clamp(p.x, margin, height_mm.width_px);
-    const float y = clamp(p.y, margin, height_mm.height_px);
-    const int column = static_cast<int>(x);
-    const int row = static_cast<int>(y);
-    return {column, row, x - static_cast<float>(column), y - static_cast<float>(row)};
-  }
-  static float mix(ImageView<const float> image, const Place& at) noexcept {
-    const float* top = image.row(at.row) + at.column;
-    const float* bottom = top + image.stride_px;
-    const float a = top[0] + at.u * (top[1] - top[0]);
-    const float b = bottom[0] + at.u * (bottom[1] - bottom[0]);
-    return a + at.v * (b - a);
-  }
+
+  Float2 last_;
+  Float2 last_inner_;
 };
 
 }  // namespace flatpose::image

@@ -5,6 +5,7 @@
 
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/image/vec2f.hpp"
 
 namespace flatpose::image {
 
@@ -14,5 +15,8 @@ namespace flatpose::image {
 /// Memory: none.  Fails: kShapeMismatch.  Thread: reentrant.
 Status sobel(ImageView<const float> height_mm, ImageView<float> slope_x,
              ImageView<float> slope_y) noexcept;
+
+/// The same, x and y side by side.
+Status sobel(ImageView<const float> height_mm, ImageView<Vec2f> slope) noexcept;
 
 }  // namespace flatpose::image
