@@ -12,7 +12,8 @@ constexpr int kStepsMax = 12;     // rests that come at all come within seven
 constexpr int kCoarseStride = 4;  // of the rim points, until the lean is about right
 constexpr double kCoarseEnoughMm = 0.5;
 constexpr double kLeanMaxRad = 65.0 * kRadPerDeg;  // no rest comes of it; slopes stay finite
-constexpr double kHighMm = 5000.0;                 // over every heap
+constexpr double kHoldsMin = 0.5;   // upright share of the normal where two touch: 60 degrees
+constexpr double kHighMm = 5000.0;  // over every heap
 
 }  // namespace
 
@@ -66,7 +67,7 @@ class Settling {
       const double change_mm = apply(*plane);
       if (tilt_rad() > kLeanMaxRad) return std::nullopt;
       if (stride == 1 && change_mm < kRestErrorMm) {
-        if (tilt_rad() > tilt_max_rad) return std::nullopt;
+        if (tilt_rad() > tilt_max_rad || !holds(*plane)) return std::nullopt;
         return rest(*plane);
       }
       stride = change_mm < kCoarseEnoughMm ? 1 : kCoarseStride;
@@ -88,7 +89,7 @@ class Settling {
   /// from the centre, z how far the part would have to rise to touch there (mostly below 0).
   void find_gaps(int stride) {
     gaps_.clear();
-    under_mm_.clear();
+    under_.clear();
     const Pose scan_T_object = pose();
     const auto count = [](const std::vector<Vec3>& list) { return static_cast<int>(list.size()); };
     for (const auto* rim : {&shape_.rims.bottom_mm, &shape_.rims.top_mm}) {
@@ -103,14 +104,16 @@ class Settling {
     }
   }
 
-  void add_gap(const Vec3& heap_mm, double part_z_mm) {
+  /// `upright`: of the unit normal there, the part along z.
+  void add_gap(const Vec3& heap_mm, double part_z_mm, double upright) {
     gaps_.push_back({heap_mm.x - center_mm_.x, heap_mm.y - center_mm_.y, heap_mm.z - part_z_mm});
-    under_mm_.push_back(heap_mm);
+    under_.push_back({heap_mm, std::fabs(upright) >= kHoldsMin});
   }
 
   void add_own(const Vec3& p_mm) {
     const Ray down{{p_mm.x, p_mm.y, kHighMm}, {0, 0, -1}};
-    add_gap({p_mm.x, p_mm.y, kHighMm - heap_.world_.cast(down).distance_mm}, p_mm.z);
+    const Hit hit = heap_.world_.cast(down);
+    add_gap({p_mm.x, p_mm.y, kHighMm - hit.distance_mm}, p_mm.z, hit.normal.z);
   }
 
   void add_other(const Vec3& p_mm, const Vec3& middle_mm, const Pose& object_T_scan) {
@@ -121,7 +124,7 @@ class Settling {
     const Vec3 start_mm{p_mm.x, p_mm.y, middle_mm.z - 2.0 * radius_mm};
     const Ray ray{object_T_scan * start_mm, object_T_scan.rotation * Vec3{0, 0, 1}};
     const auto hit = shape_.solid->first_hit(ray, 0.0, 4.0 * radius_mm);
-    if (hit) add_gap(p_mm, start_mm.z + hit->distance_mm);
+    if (hit) add_gap(p_mm, start_mm.z + hit->distance_mm, dot(hit->normal, ray.direction));
   }
 
   /// Lays the part onto the plane; how far that moved any of its points, about.
@@ -133,12 +136,17 @@ class Settling {
            shape_.solid->sphere_radius_mm() * (std::fabs(plane.slope_x) + std::fabs(plane.slope_y));
   }
 
+  [[nodiscard]] bool holds(const SupportPlane& plane) const {
+    return std::all_of(plane.touched.begin(), plane.touched.end(),
+                       [&](int touched) { return under_[touched].holds; });
+  }
+
   [[nodiscard]] Rest rest(const SupportPlane& plane) const {
     Rest rest{.scan_T_object = pose(),
               .tilt_rad = tilt_rad(),
               .contacts_mm = {},
               .center_of_mass_mm = center_mm_};
-    for (int k = 0; k < 3; ++k) rest.contacts_mm[k] = under_mm_[plane.touched[k]];
+    for (int k = 0; k < 3; ++k) rest.contacts_mm[k] = under_[plane.touched[k]].p_mm;
     return rest;
   }
 
@@ -150,7 +158,11 @@ class Settling {
   double slope_x_ = 0.0;
   double slope_y_ = 0.0;
   std::vector<Vec3> gaps_;
-  std::vector<Vec3> under_mm_;  // the heap's side of each gap, in scan
+  struct Under {
+    Vec3 p_mm;   // the heap's side of a gap, in scan
+    bool holds;  // a steep side that leans on an edge does not: it would slip past
+  };
+  std::vector<Under> under_;
 };
 
 std::optional<Rest> settle(Heap& heap, const Drop& drop, double tilt_max_rad) {

@@ -67,7 +67,8 @@ struct Rest {
 };
 
 /// Cost: about 3 ms in a heap.
-/// Fails: none where the part finds no rest, or none but leaning more than `tilt_max_rad`.
+/// Fails: none where the part finds no rest, none but leaning more than `tilt_max_rad`, or none but
+/// with a side steeper than 60 degrees against an edge, past which it would slip.
 [[nodiscard]] std::optional<Rest> settle(Heap& heap, const Drop& drop, double tilt_max_rad);
 
 }  // namespace flatpose::sim

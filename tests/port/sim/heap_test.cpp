@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kOverlapMaxMm = 0.3;
 constexpr double kGapMaxMm = 0.3;
-constexpr double kColumnMm = 1.0;
 
 Scene make(const std::string& name, std::uint64_t seed, const std::string& part = "",
            bool in_bin = false) {
@@ -54,8 +53,8 @@ double most_visible(const Scene& scene, const std::string& part, bool is_upright
   return most;
 }
 
-void expect_at_rest(const Scene& scene) {
-  const Columns columns(scene, kColumnMm);
+void expect_at_rest(const Scene& scene, double column_mm = 1.0) {
+  const Columns columns(scene, column_mm);
   EXPECT_LT(columns.deepest_overlap_mm(), kOverlapMaxMm);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& body = scene.instances[i];
@@ -65,8 +64,9 @@ void expect_at_rest(const Scene& scene) {
   }
 }
 
-void expect_inside(const Scene& scene, double reach_x_mm, double reach_y_mm) {
-  const Ruler ruler{SensorConfig{}};
+void expect_inside(const Scene& scene, double reach_x_mm, double reach_y_mm,
+                   const SensorConfig& sensor = {}) {
+  const Ruler ruler{sensor};
   for (const Instance& body : scene.instances) {
     for (const Vec2 p : body.part->outline.outer) {
       for (const double z_mm : {-body.part->thickness_mm, height_max_mm(*body.part)}) {
@@ -128,6 +128,15 @@ TEST_P(HeapedScene, IsTheSameForTheSameSeedOnly) {
   EXPECT_NE(a.instances[0].scan_T_object.position_mm, c.instances[0].scan_T_object.position_mm);
 }
 
+TEST_P(HeapedScene, KeepsToASmallField) {
+  SceneConfig config;
+  config.scene = GetParam();
+  SensorConfig small;
+  small.field_x_mm = 400.0;
+  small.field_y_mm = 300.0;
+  expect_inside(make_scene(config, small, 3), 200.0, 150.0, small);
+}
+
 TEST_P(HeapedScene, SaysSoWhenTheFieldHasNoRoom) {
   SceneConfig config;
   config.scene = GetParam();
@@ -147,6 +156,11 @@ TEST_P(HeapedScene, SaysSoWhenTheFieldHasNoRoom) {
 INSTANTIATE_TEST_SUITE_P(, HeapedScene,
                          testing::Values("medium", "high", "pile", "absent", "steep", "buried"),
                          [](const auto& scene) { return std::string(scene.param); });
+
+TEST(HeapedScenes, NoPartIsHeldByItsSide) {
+  // In this scene a part once hung with its leaning side on an edge, past which it would slip.
+  expect_at_rest(make("absent", 64), 0.5);
+}
 
 TEST(HeapedScenes, HoldWhatTheirNamesSay) {
   for (std::uint64_t seed = 0; seed < 2; ++seed) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "port/sim/random.hpp"
 #include "tests/port/sim/box.hpp"
 #include "tests/port/sim/columns.hpp"
 
@@ -152,6 +153,36 @@ TEST(Settle, OverhangingSideStaysClearOfWhatStandsBeside) {
     scene.instances.push_back({part, rest->scan_T_object});
     EXPECT_LT(Columns(scene, 0.5).deepest_overlap_mm(), 0.2) << x_mm;
   }
+}
+
+TEST(Settle, ContactsOfAHeapTouchAndHold) {
+  Heap heap;
+  Random random(6);
+  int rested = 0;
+  for (int i = 0; i < 60; ++i) {
+    const auto& names = part_names();
+    const auto part = std::make_shared<const Part>(catalogue_part(names[i % names.size()]));
+    const Drop drop{part, random.uniform(-120, 120), random.uniform(-90, 90), random.uniform(-3, 3),
+                    i % 3 == 0};
+    const auto rest = settle(heap, drop, 0.5);
+    if (!rest) continue;
+    ++rested;
+    expect_held(*rest);
+    const Pose object_T_scan = rest->scan_T_object.inverse();
+    const Solid solid(part);
+    for (const Vec3& contact : rest->contacts_mm) {
+      // A little aside from the rim, toward the centre, the ray up from below finds the part.
+      constexpr double kAside = 1e-4, kBelowMm = 50.0;
+      const Vec3 aside = kAside * (rest->center_of_mass_mm - contact);
+      const Vec3 from = contact + Vec3{aside.x, aside.y, -kBelowMm};
+      const auto hit = solid.first_hit(
+          {object_T_scan * from, object_T_scan.rotation * Vec3{0, 0, 1}}, 0.0, 100.0);
+      if (!hit || hit->face == Face::kSide) continue;  // past a hole's rim, or a side
+      EXPECT_NEAR(hit->distance_mm, kBelowMm, 2.0 * kRestErrorMm) << part->name;
+    }
+    heap.add({part, rest->scan_T_object});
+  }
+  EXPECT_GT(rested, 20);
 }
 
 TEST(Settle, ForgetsTheBodyRemoved) {
