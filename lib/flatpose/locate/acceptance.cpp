@@ -19,19 +19,20 @@ void Acceptance::note_rejected(double score) noexcept {
   result_.best_rejected_score = std::max(result_.best_rejected_score, score);
 }
 
-void Acceptance::consider(const refine::PolishResult& polished) noexcept {
+bool Acceptance::consider(const refine::PolishResult& polished) noexcept {
   const Pose& pose = polished.work_T_object;
   const Verification v = verify(part_, fine_, claimed_, pose, settings_.verify);
   if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
     note_rival(v.score, pose);
-    return;
+    return false;
   }
   if (v.score < settings_.score_threshold || v.visible < config_.min_visible || !is_allowed(pose)) {
     note_rejected(v.score);
-    return;
+    return false;
   }
   result_.matches[result_.match_count++] = to_match(polished, v);
   claim(part_, fine_, pose, settings_.verify, claimed_);
+  return true;
 }
 
 // A second pose in the place of a match that is no equivalent of it.
@@ -74,8 +75,9 @@ Match Acceptance::to_match(const refine::PolishResult& polished,
   match.surface_rms_mm = polished.surface_rms_mm;
   // Told in the axes of the equivalent that is reported, not of the one that was polished.
   const Pose face_T_polished = frames_.face_T_work * polished.work_T_object;
-  const refine::Matrix<6> c = refine::covariance_seen_from(
-      polished.covariance, face_T_polished.inverse() * match.face_T_object);
+  const refine::Matrix<6> c =
+      refine::covariance_seen_from(refine::Matrix<6>(polished.covariance.data()),
+                                   face_T_polished.inverse() * match.face_T_object);
   match.sigma_rad = {std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2))};
   const Rotation& r = match.face_T_object.rotation;
   const auto variance_along = [&](int axis) {

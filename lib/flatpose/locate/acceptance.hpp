@@ -27,8 +27,9 @@ class Acceptance {
         claimed_(claimed),
         result_(result) {}
 
-  /// Takes a polished pose as the next match, when it is one.
-  void consider(const refine::PolishResult& polished) noexcept;
+  /// Takes a polished pose as the next match, when it is one. A pose that is none may become one
+  /// later, when parts that adjoin it have been accepted.
+  [[nodiscard]] bool consider(const refine::PolishResult& polished) noexcept;
   /// Remembers how near a pose came that is no match.
   void note_rejected(double score) noexcept;
   /// Puts the matches in the order asked for.

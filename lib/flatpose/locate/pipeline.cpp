@@ -165,6 +165,7 @@ class Pipeline {
       const auto second = refine::minimize<6>(narrow, first.x, lm);
       if (is_known(second.x)) continue;
       Instance& instance = work_.instances[instance_count_++];
+      instance = Instance{};
       instance.work_T_object = second.x;
       instance.verification = verify(part_, work_.fine, {}, second.x, settings_.verify);
     }
@@ -196,20 +197,65 @@ class Pipeline {
     return a.work_T_object.rotation.m < b.work_T_object.rotation.m;
   }
 
-  // The last step on the raw points, and the verdict, best first.
+  // The last step on the raw points, and the verdict, best first. A match explains why the contour
+  // of a part that adjoins it cannot be seen there, so those left are looked at again while there
+  // are new ones.
   void accept() noexcept {
-    for (int i = 0; i < instance_count_ && !acceptance_.is_full() && !is_late(); ++i) {
-      const Instance& instance = work_.instances[i];
-      if (instance.verification.score < kHopelessShare * settings_.score_threshold) {
-        acceptance_.note_rejected(instance.verification.score);
-        continue;
-      }
-      const refine::RawScan raw{scan_, frames_.work_T_scan, &scene_.map};
-      const Result<refine::PolishResult> polished =
-          refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.crossings);
-      if (polished) acceptance_.consider(*polished);
+    constexpr int kRoundsMax = kMatchCountMax;
+    bool has_new = true;
+    for (int round = 0; has_new && round < kRoundsMax; ++round) {
+      has_new = false;
+      for (int i = 0; i < instance_count_ && !acceptance_.is_full() && !is_late(); ++i)
+        has_new |= consider(i);
     }
     result_.timings.verify_us += lap();
+  }
+
+  // Of the poses in the place of the next, the one that is best on the raw points: a part that is
+  // nearly symmetric is often told from its turned self by these alone.
+  bool consider(int index) noexcept {
+    if (!polish(work_.instances[index])) return false;
+    int best = index;
+    for (int i = index + 1; i < instance_count_; ++i) {
+      if (is_same_place(work_.instances[i], work_.instances[index]) && polish(work_.instances[i]) &&
+          rank(work_.instances[i].verification) > rank(work_.instances[best].verification)) {
+        best = i;
+      }
+    }
+    bool has_new = false;
+    for (const int i : {best, index}) {
+      Instance& instance = work_.instances[i];
+      if (!instance.is_open || !acceptance_.consider(instance.polished)) continue;
+      instance.is_open = false;
+      has_new = true;
+    }
+    return has_new;
+  }
+
+  [[nodiscard]] bool is_same_place(const Instance& a, const Instance& b) const noexcept {
+    constexpr double kShare = 0.3;
+    return norm(a.work_T_object.position_mm - b.work_T_object.position_mm) <
+           kShare * part_.radius_mm;
+  }
+
+  /// Whether the instance is still in question; it is polished then.
+  bool polish(Instance& instance) noexcept {
+    if (!instance.is_open || instance.is_polished) return instance.is_open;
+    instance.is_open = instance.verification.score >= kHopelessShare * settings_.score_threshold;
+    if (!instance.is_open) {
+      acceptance_.note_rejected(instance.verification.score);
+      return false;
+    }
+    const refine::RawScan raw{scan_, frames_.work_T_scan, &scene_.map};
+    const Result<refine::PolishResult> polished =
+        refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.crossings);
+    instance.is_open = polished.status() == Status::kOk;
+    if (!instance.is_open) return false;
+    instance.polished = *polished;
+    instance.is_polished = true;
+    instance.verification =
+        verify(part_, work_.fine, {}, polished->work_T_object, settings_.verify);
+    return true;
   }
 
   void report() noexcept {

@@ -1,6 +1,7 @@
 #include "flatpose/locate/verify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flatpose::locate {
@@ -50,7 +51,7 @@ bool is_claimed(const refine::FineImages& images, ImageView<const std::uint8_t> 
 // decide.
 double edge_agreement(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
                       double tolerance_px) noexcept {
-  constexpr double kFadeShare = 2.5;
+  constexpr double kFadeShare = 2.4;
   const Cell cell = cell_at(images.grid, p_mm.x, p_mm.y);
   if (!images.height_mm.contains(cell.column, cell.row)) return 0.0;
   const int octant = image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
@@ -68,19 +69,29 @@ struct Verdict {
   double agreement = 0.0;  ///< 1: confirmed, 0: contradicted.
 };
 
-Verdict judge_contour(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
-                      const Vec3& probe_mm, const VerifyConfig& config) noexcept {
+Verdict judge_contour(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
+                      const Vec3& p_mm, const Vec3& falling, const Vec3& probe_mm,
+                      const VerifyConfig& config) noexcept {
   const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
   if (inside == Sight::kNothing || inside == Sight::kAbove) return {};
   const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
   if (outside == Sight::kAbove) return {};
   const double agreement = edge_agreement(images, p_mm, falling, config.edge_tolerance_px);
+  // Another part adjoins here, and where two touch at one height there is no edge.
+  if (agreement < 1.0 && is_claimed(images, claimed, p_mm + probe_mm)) return {};
   if (outside == Sight::kNothing && agreement == 0.0) return {};  // the scan ends or is dark here
   return {true, inside == Sight::kAt ? agreement : 0.0};
 }
 
 double share(double confirmed, double visible) noexcept {
   return visible > 0.0 ? confirmed / visible : 0.0;
+}
+
+// Noise does not open a surface: what is missing of it is a hole or an end that the part does not
+// have, small as it may be beside the rest.
+double surface_agreement(double confirmed_share) noexcept {
+  constexpr double kContradictionWeight = 3.0;
+  return std::max(0.0, 1.0 - kContradictionWeight * (1.0 - confirmed_share));
 }
 
 // What a contour point weighs: as much as its direction is rare. The two ends of a bar are all that
@@ -116,6 +127,20 @@ class DirectionWeight {
   double inverse_yy_ = 1.0;
 };
 
+// Which side of a step the sensor draws as a ramp turns with the part, so no point is more certain
+// than the contour typically is: the middle one of its spreads.
+double typical_spread_mm(const model::Template& part) noexcept {
+  std::array<float, model::kContourPointCountMax> spread_mm{};
+  int count = 0;
+  for (const model::ContourPoint& p : part.contour_points()) {
+    if (p.spread_mm >= 0.0F) spread_mm[count++] = p.spread_mm;
+  }
+  if (count == 0) return 0.0;
+  const auto middle = spread_mm.begin() + count / 2;
+  std::nth_element(spread_mm.begin(), middle, spread_mm.begin() + count);
+  return static_cast<double>(*middle);
+}
+
 }  // namespace
 
 Verification verify(const model::Template& part, const refine::FineImages& images,
@@ -132,6 +157,7 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   }
   const double probe_mm = kProbe_px * images.grid.cell_mm;
   const DirectionWeight weight(part);
+  const double typical_mm = typical_spread_mm(part);
   double visible_weight = 0.0;
   double confirmed_weight = 0.0;
   for (const model::ContourPoint& p : part.contour_points()) {
@@ -141,10 +167,11 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     // teach scan saw a ramp the place is as uncertain as that was.
     VerifyConfig leaning = config;
     leaning.edge_tolerance_px +=
-        std::max(0.0, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
+        std::max(typical_mm, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
     leaning.edge_tolerance_px +=
         kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
-    const Verdict verdict = judge_contour(images, q_mm, falling, probe_mm * falling, leaning);
+    const Verdict verdict =
+        judge_contour(images, claimed, q_mm, falling, probe_mm * falling, leaning);
     if (!verdict.seen) continue;
     ++out.contour.visible_count;
     visible_weight += weight(p);
@@ -152,7 +179,7 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     confirmed_weight += verdict.agreement * weight(p);
   }
   out.visible = static_cast<double>(out.surface.visible_count) / part.surface_count;
-  out.score = share(out.surface.confirmed_count, out.surface.visible_count) *
+  out.score = surface_agreement(share(out.surface.confirmed_count, out.surface.visible_count)) *
               share(confirmed_weight, visible_weight);
   return out;
 }

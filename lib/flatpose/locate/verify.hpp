@@ -14,7 +14,7 @@ namespace flatpose::locate {
 struct VerifyConfig {
   double height_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
   double edge_tolerance_px =
-      2.0;  ///< A contour point this near to an edge that falls its way is confirmed.
+      1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
 };
 
 struct Evidence {

@@ -1,6 +1,7 @@
 #include "flatpose/locate/workspace.hpp"
 
 #include "flatpose/image/canny.hpp"
+#include "flatpose/image/dark_pit.hpp"
 #include "flatpose/image/fill.hpp"
 #include "flatpose/rectify/rectify.hpp"
 #include "flatpose/rectify/survey.hpp"
@@ -40,6 +41,7 @@ std::size_t workspace_required_bytes(const Limits& limits) noexcept {
     });
   }
   with_scratch([&] { image::reserve_fill_scratch(arena, grid.width_px); });
+  with_scratch([&] { image::reserve_dark_pit_scratch(arena, grid.width_px, grid.height_px); });
   with_scratch([&] { image::reserve_edge_scratch(arena, grid.width_px, grid.height_px); });
   (void)take_workspace(arena, grid);
   with_scratch([&] { search::reserve_search_scratch(arena, grid); });

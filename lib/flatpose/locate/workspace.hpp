@@ -7,6 +7,7 @@
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/locate/verify.hpp"
 #include "flatpose/refine/fine_images.hpp"
+#include "flatpose/refine/polish.hpp"
 #include "flatpose/refine/raw_contour.hpp"
 #include "flatpose/scene/scene.hpp"
 #include "flatpose/search/grid_search.hpp"
@@ -22,6 +23,9 @@ inline constexpr int kCandidateCountMax = 192;
 struct Instance {
   Pose work_T_object;
   Verification verification;
+  bool is_open = true;  ///< Neither a match nor out of the question.
+  bool is_polished = false;
+  refine::PolishResult polished;
 };
 
 struct Workspace {

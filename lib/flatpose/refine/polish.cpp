@@ -227,7 +227,8 @@ Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
     // What was met so well is weighed so: the next round's Hessian is then one over the covariance.
     sigmas.surface_mm = std::max(surface.rms(), kSigmaMin * part.pitch_mm);
     sigmas.contour_mm = std::max(contour.rms(), kSigmaMin * part.pitch_mm);
-    if (const auto c = covariance<6>(minimum.hessian)) out.covariance = c->matrix;
+    if (const auto c = covariance<6>(minimum.hessian))
+      std::copy_n(c->matrix.data(), out.covariance.size(), out.covariance.begin());
   }
   out.turn_is_free = part.symmetry.order == model::kFullSymmetry;
   return out;

@@ -4,6 +4,7 @@
 // all six parameters. On a flat part the first tell z and tilt and the second x, y and phi; slopes
 // and domes on the part help to hold x and y too.
 
+#include <array>
 #include <span>
 
 #include "flatpose/model/template.hpp"
@@ -22,9 +23,8 @@ struct PolishConfig {
 
 struct PolishResult {
   Pose work_T_object;
-  Matrix<6> covariance =
-      Matrix<6>::Zero();      ///< Of (turn, shift) in the object's own axes; rad, mm.
-  bool turn_is_free = false;  ///< Full symmetry: no turn about z was fitted.
+  std::array<double, 36> covariance{};  ///< Of (turn, shift) in the object's own axes; rad, mm.
+  bool turn_is_free = false;            ///< Full symmetry: no turn about z was fitted.
   double edge_rms_mm = 0.0;
   double surface_rms_mm = 0.0;
   int crossing_count = 0;

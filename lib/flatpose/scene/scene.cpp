@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "flatpose/image/canny.hpp"
+#include "flatpose/image/dark_pit.hpp"
 #include "flatpose/image/fill.hpp"
 
 namespace flatpose::scene {
@@ -15,6 +16,12 @@ image::EdgeConfig edge_config(const SceneConfig& config) noexcept {
   edges.jump_high_mm = static_cast<float>(high_mm);
   edges.jump_low_mm = static_cast<float>(kLowShare * high_mm);
   return edges;
+}
+
+image::DarkPitConfig pit_config(const SceneConfig& config) noexcept {
+  const double level_mm = edge_threshold_mm(config);
+  return {static_cast<float>(level_mm),
+          static_cast<float>(std::max(config.step_mm, 2.0 * level_mm))};
 }
 
 rectify::RectifyConfig rectify_config(const SceneConfig& config) noexcept {
@@ -67,6 +74,11 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   const Status filled =
       image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing, arena);
   if (filled != Status::kOk) return filled;
+  if (const Status s =
+          image::lower_dark_pits(scene.missing, pit_config(config), arena, scene.filled_mm);
+      s != Status::kOk) {
+    return s;
+  }
   const Result<int> edge_count =
       image::detect_edges(scene.filled_mm, scene.missing, grid.cell_mm, edge_config(config), arena,
                           scene.edge_kind, edge_memory);

@@ -9,9 +9,9 @@
 namespace flatpose::teach {
 namespace {
 
-// Bounds of a part's own threshold: a place where three tenths of what should be seen are not is no
-// part, whatever the teach scan held; and a part with a tenth of it spoilt still is one.
-constexpr double kThresholdMin = 0.70;
+// Bounds of a part's own threshold: a place where a sixth of what the part itself shows is not seen
+// is no part, whatever the teach scan held; and a part with a tenth of it spoilt still is one.
+constexpr double kThresholdShareMin = 0.83;
 constexpr double kThresholdMax = 0.88;
 // Scores of like instances differ by less than this; what resembles the part only is farther off.
 constexpr double kScoreGap = 0.11;
@@ -94,8 +94,9 @@ void set_threshold(const locate::LocateResult& everything, const Pose& face_T_ob
     }
     lowest_like = std::min(lowest_like, scores[i]);
   }
+  const double threshold_min = std::min(kThresholdShareMin * part.self_score, kThresholdMax);
   part.score_threshold =
-      std::clamp(0.5 * (lowest_like + part.rival_score), kThresholdMin, kThresholdMax);
+      std::clamp(0.5 * (lowest_like + part.rival_score), threshold_min, kThresholdMax);
   constexpr double kMarginThin = 0.2;
   flag(part, model::kWeakMarginThin, lowest_like - part.rival_score < kMarginThin);
 }
