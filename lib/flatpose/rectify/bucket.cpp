@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "flatpose/rectify/scan_row.hpp"
+#include "flatpose/rectify/row_kernels.hpp"
 
 namespace flatpose::rectify {
 namespace {
@@ -48,7 +48,7 @@ void count_cells(const RangeImageView& scan, const ScanToGrid& to_grid, const Gr
                  const Buffers& b) noexcept {
   std::fill(b.begin.begin(), b.begin.end(), 0);
   for (int r = 0; r < scan.height_px; ++r) {
-    to_grid.transform(scan, r, b.row);
+    kPortableRowKernels.transform_row(to_grid, scan, r, b.row);
     std::int32_t* const cells = b.cell.data() + static_cast<std::ptrdiff_t>(r) * scan.width_px;
     for (int c = 0; c < scan.width_px; ++c) {
       cells[c] = cell_index(b.row, c, grid);
@@ -62,7 +62,8 @@ void count_cells(const RangeImageView& scan, const ScanToGrid& to_grid, const Gr
 void scatter(const RangeImageView& scan, const ScanToGrid& to_grid, const Buffers& b) noexcept {
   std::int32_t source = 0;
   for (int r = 0; r < scan.height_px; ++r) {
-    to_grid.transform(scan, r, b.row);  // cheaper again than keeping every height
+    kPortableRowKernels.transform_row(to_grid, scan, r,
+                                      b.row);  // cheaper again than keeping every height
     for (int c = 0; c < scan.width_px; ++c, ++source) {
       const std::int32_t cell = b.cell[source];
       if (cell != kOutside) b.entries[b.begin[cell]++] = {b.row.z_mm[c], source};

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "flatpose/rectify/quad_block.hpp"
-#include "flatpose/rectify/scan_row.hpp"
+#include "flatpose/rectify/row_kernels.hpp"
 #include "flatpose/rectify/triangle.hpp"
 
 namespace flatpose::rectify {
@@ -72,18 +71,20 @@ void paint_triangles(const Strip& strip, int i, std::int32_t edges, const Height
   if ((triangles & kBcd) != 0) paint_triangle(out, b, c, d);
 }
 
-void paint_strip(const Strip& strip, const EdgeLimits& limits, const HeightMap& out) noexcept {
+void paint_strip(const RowKernels& kernels, const Strip& strip, const EdgeLimits& limits,
+                 const HeightMap& out) noexcept {
   const std::int32_t source_of_corner[] = {0, 1, strip.width_px + 1, strip.width_px};
   const int quad_count = strip.width_px - 1;
   BlockFindings findings;
+  const HeightMap map = out;  // its address is nobody's: stores into its images do not change it
   for (int first = 0; first < quad_count; first += kBlock) {
     const int count = std::min(kBlock, quad_count - first);
     const QuadBlock block = strip.block(first, count);
-    if (!covers_any(block)) continue;
-    find_cells(block, limits, out.grid, findings);
+    if (!kernels.covers_any(block)) continue;
+    kernels.find_cells(block, limits, out.grid, findings);
     for (int i = 0; i < count; ++i) {
       if (findings.finding[i] == Finding::kOneCell) {
-        put(out, findings.column[i], findings.row[i], findings.height_mm[i],
+        put(map, findings.column[i], findings.row[i], findings.height_mm[i],
             strip.source_index + first + i + source_of_corner[findings.nearest[i]]);
       } else if (findings.finding[i] == Finding::kTriangles) {
         paint_triangles(strip, first + i, findings.edges[i], out);
@@ -124,12 +125,13 @@ Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintCon
 
   const ScanToGrid to_grid(work_T_scan, out.grid);
   const EdgeLimits limits = edge_limits(config, out.grid.cell_mm);
-  to_grid.transform(scan, 0, strip.below);
+  const RowKernels& kernels = row_kernels(config.vector_path);
+  kernels.transform_row(to_grid, scan, 0, strip.below);
   for (int row = 1; row < scan.height_px; ++row) {
     std::swap(strip.above, strip.below);
-    to_grid.transform(scan, row, strip.below);
+    kernels.transform_row(to_grid, scan, row, strip.below);
     strip.source_index = (row - 1) * scan.width_px;
-    paint_strip(strip, limits, out);
+    paint_strip(kernels, strip, limits, out);
   }
   return Status::kOk;
 }

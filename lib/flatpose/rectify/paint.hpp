@@ -21,6 +21,7 @@
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
@@ -33,6 +34,7 @@ struct PaintConfig {
   double jump_mm = 1.0;
   double max_slope = 2.0;   ///< mm per mm, [0, 1e6].
   double max_gap_mm = 5.0;  ///< The longest edge in x and y, (0, 1e6]: some three pixel pitches.
+  VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
 /// Fails: kInvalidArgument when a field is outside its range.

@@ -1,13 +1,12 @@
 #pragma once
-// A block of neighbouring quads between two scan rows, judged four at a time. Most quads of a scan
-// about as dense as the map hold one cell's centre or none: these are finished here; the rest is
-// left to triangle.hpp.
+// A block of neighbouring quads between two scan rows, judged as many at a time as a vector holds.
+// Most quads of a scan about as dense as the map hold one cell's centre or none: these are finished
+// here; the rest is left to triangle.hpp. The loops over a block are in row_kernels.hpp.
 //
 // The arithmetic of the common case is exact in float: seen from the only centre in its box, a
 // corner is less than a cell away, so places are odd numbers below 2^12, their products are below
 // 2^24, and the difference of two (even, below 2^25) still has all its bits.
 
-#include <array>
 #include <cstdint>
 
 #include "flatpose/rectify/height_map.hpp"
@@ -51,19 +50,12 @@ enum class Finding : std::int32_t {
 };
 
 struct BlockFindings {
-  std::array<std::int32_t, kBlock> edges;  ///< Bits of those that hold.
-  std::array<Finding, kBlock> finding;
-  std::array<std::int32_t, kBlock> column;
-  std::array<std::int32_t, kBlock> row;
-  std::array<float, kBlock> height_mm;
-  std::array<std::int32_t, kBlock> nearest;  ///< 0 to 3 for corners a to d.
+  std::int32_t edges[kBlock];  ///< Bits of those that hold.
+  Finding finding[kBlock];
+  std::int32_t column[kBlock];
+  std::int32_t row[kBlock];
+  float height_mm[kBlock];
+  std::int32_t nearest[kBlock];  ///< 0 to 3 for corners a to d.
 };
-
-/// False when no quad of the block can hold a cell's centre.
-[[nodiscard]] bool covers_any(const QuadBlock& block) noexcept;
-
-/// Finds what each quad of the block does to the map.
-void find_cells(const QuadBlock& block, const EdgeLimits& limits, const Grid& grid,
-                BlockFindings& out) noexcept;
 
 }  // namespace flatpose::rectify

@@ -8,7 +8,6 @@ namespace flatpose::rectify {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kReach_subcells = static_cast<double>(kReach_px) * (kUnitsPerCell / 2);
 
 bool all_finite(const double* values, int count) noexcept {
   return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
@@ -31,69 +30,15 @@ ScanToGrid::ScanToGrid(const Pose& work_T_scan, const Grid& grid) noexcept {
   const double subcells_per_mm = (kUnitsPerCell / 2) / grid.cell_mm;
   const Vec3& p = work_T_scan.position_mm;
   for (int i = 0; i < 3; ++i) {
-    u_[i] = work_T_scan.rotation.m[i] * subcells_per_mm;
-    v_[i] = work_T_scan.rotation.m[3 + i] * subcells_per_mm;
-    z_[i] = work_T_scan.rotation.m[6 + i];
+    u[i] = work_T_scan.rotation.m[i] * subcells_per_mm;
+    v[i] = work_T_scan.rotation.m[3 + i] * subcells_per_mm;
+    z[i] = work_T_scan.rotation.m[6 + i];
   }
-  u_[3] = (p.x - grid.x0_mm) * subcells_per_mm + kReach_subcells;
-  v_[3] = (p.y - grid.y0_mm) * subcells_per_mm + kReach_subcells;
-  z_[3] = p.z;
-  is_straight_ =
-      u_[1] == 0.0 && u_[2] == 0.0 && v_[0] == 0.0 && v_[2] == 0.0 && z_[0] == 0.0 && z_[1] == 0.0;
-}
-
-template <bool kStraight, int kStrideFloats>
-void ScanToGrid::transform_strided(const RangeImageView& scan, int row,
-                                   const ScanRow& out) const noexcept {
-  // A stride known when compiling lets the loop run on vectors; 0 stands for any other.
-  constexpr auto kFloatBytes = static_cast<std::ptrdiff_t>(sizeof(float));
-  const std::ptrdiff_t stride =
-      kStrideFloats > 0 ? kStrideFloats : scan.pixel_stride_bytes / kFloatBytes;
-  const std::ptrdiff_t skip = row * (scan.row_stride_bytes / kFloatBytes);
-  const float* const xs = scan.x_mm + skip;
-  const float* const ys = scan.y_mm + skip;
-  const float* const zs = scan.z_mm + skip;
-  std::int32_t* const out_u = out.u.data();
-  std::int32_t* const out_v = out.v.data();
-  float* const out_z_mm = out.z_mm.data();
-  const double u0 = u_[0], u1 = u_[1], u2 = u_[2], u3 = u_[3];
-  const double v0 = v_[0], v1 = v_[1], v2 = v_[2], v3 = v_[3];
-  const double z0 = z_[0], z1 = z_[1], z2 = z_[2], z3 = z_[3];
-  constexpr auto kReachUnits = static_cast<std::int32_t>(2 * kReach_subcells);
-  const int count = scan.width_px;  // a local: stores to int32 could change the member
-  for (int c = 0; c < count; ++c) {
-    const double x = static_cast<double>(xs[c * stride]);
-    const double y = static_cast<double>(ys[c * stride]);
-    const double z = static_cast<double>(zs[c * stride]);
-    const double u = kStraight ? u0 * x + u3 : u0 * x + u1 * y + u2 * z + u3;
-    const double v = kStraight ? v1 * y + v3 : v0 * x + v1 * y + v2 * z + v3;
-    const double w_mm = kStraight ? z2 * z + z3 : z0 * x + z1 * y + z2 * z + z3;
-    // A NaN or infinite coordinate fails one of these: 0 * NaN is NaN.
-    const bool seen = (u >= 0.0) & (u < 2.0 * kReach_subcells) & (v >= 0.0) &
-                      (v < 2.0 * kReach_subcells) & (std::fabs(w_mm) <= kCoordinateMax_mm);
-    const double u_seen = seen ? u : 0.0;
-    const double v_seen = seen ? v : 0.0;
-    const double w_seen_mm = seen ? w_mm : std::numeric_limits<double>::quiet_NaN();
-    out_u[c] = 2 * static_cast<std::int32_t>(u_seen) + 1 - kReachUnits;
-    out_v[c] = 2 * static_cast<std::int32_t>(v_seen) + 1 - kReachUnits;
-    out_z_mm[c] = static_cast<float>(w_seen_mm);
-  }
-}
-
-template <bool kStraight>
-void ScanToGrid::transform_any(const RangeImageView& scan, int row,
-                               const ScanRow& out) const noexcept {
-  switch (scan.pixel_stride_bytes) {
-    case 1 * sizeof(float): return transform_strided<kStraight, 1>(scan, row, out);
-    case 3 * sizeof(float): return transform_strided<kStraight, 3>(scan, row, out);
-    case 4 * sizeof(float): return transform_strided<kStraight, 4>(scan, row, out);
-    default: return transform_strided<kStraight, 0>(scan, row, out);
-  }
-}
-
-void ScanToGrid::transform(const RangeImageView& scan, int row, const ScanRow& out) const noexcept {
-  if (is_straight_) return transform_any<true>(scan, row, out);
-  transform_any<false>(scan, row, out);
+  u[3] = (p.x - grid.x0_mm) * subcells_per_mm + kReach_subcells;
+  v[3] = (p.y - grid.y0_mm) * subcells_per_mm + kReach_subcells;
+  z[3] = p.z;
+  is_straight =
+      u[1] == 0.0 && u[2] == 0.0 && v[0] == 0.0 && v[2] == 0.0 && z[0] == 0.0 && z[1] == 0.0;
 }
 
 Status check_scan(const RangeImageView& scan, const Pose& work_T_scan) noexcept {

@@ -28,7 +28,7 @@ inline constexpr int kScanSideMax_px = 65535;     ///< Pixels along a side of a 
 inline constexpr int kScanPointsMax = 1 << 26;    ///< Pixels of a scan.
 inline constexpr double kCoordinateMax_mm = 1e6;  ///< A larger coordinate is no measurement.
 
-inline constexpr int kRowPadding = 4;
+inline constexpr int kRowPadding = 16;  ///< As much as the widest vector may read beyond.
 
 /// Column, row and height of each point of a scan row, and of kRowPadding missing points beyond. A
 /// missing point has a NaN height.
@@ -45,25 +45,17 @@ struct ScanRow {
   return (place + kUnitsPerCell / 2) >> kUnitBits;
 }
 
+inline constexpr double kReach_subcells = 1.0 * kReach_px * (kUnitsPerCell / 2);
+
 /// From the scan's coordinates to places in a grid and heights above the work plane.
-class ScanToGrid {
- public:
+struct ScanToGrid {
+  double u[4];  ///< column * (units per cell / 2) + what makes it positive within reach.
+  double v[4];
+  double z[4];
+  /// Scan and grid axes agree but for their sense: the common sensor over a plane.
+  bool is_straight;
+
   ScanToGrid(const Pose& work_T_scan, const Grid& grid) noexcept;
-
-  /// Transforms row `row` of `scan` into `out`, which is as wide.
-  void transform(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
-
- private:
-  template <bool kStraight>
-  void transform_any(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
-  template <bool kStraight, int kStrideFloats>
-  void transform_strided(const RangeImageView& scan, int row, const ScanRow& out) const noexcept;
-
-  double u_[4];  // column * (units per cell / 2) + what makes it positive within reach
-  double v_[4];
-  double z_[4];
-  bool
-      is_straight_;  // scan and grid axes agree but for their sense: the common sensor over a plane
 };
 
 /// What must hold of a scan and its pose before anything starts.

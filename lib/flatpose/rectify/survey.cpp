@@ -15,14 +15,14 @@ namespace {
 // ---- the pass over all points ----
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Float4 kMissing4 = std::numeric_limits<float>::quiet_NaN() + Float4{};
+constexpr Floats kMissing = std::numeric_limits<float>::quiet_NaN() + Floats{};
 
-/// Count and box, four points side by side.
+/// Count and box, some points side by side.
 struct Extent {
-  std::array<Float4, 3> min_mm = {Float4{} + kInfinity, Float4{} + kInfinity, Float4{} + kInfinity};
-  std::array<Float4, 3> max_mm = {Float4{} - kInfinity, Float4{} - kInfinity, Float4{} - kInfinity};
-  Int4 valid_count{};
-  Int4 wild{};  // set where a coordinate was infinite or giant
+  std::array<Floats, 3> min_mm = {Floats{} + kInfinity, Floats{} + kInfinity, Floats{} + kInfinity};
+  std::array<Floats, 3> max_mm = {Floats{} - kInfinity, Floats{} - kInfinity, Floats{} - kInfinity};
+  Ints valid_count{};
+  Ints wild{};  // set where a coordinate was infinite or giant
 };
 
 /// Three rows of rotation and translation. The box needs no more than float.
@@ -39,12 +39,12 @@ Affine affine_of(const Pose& pose) noexcept {
 }
 
 /// Adds four points. A missing one fails every comparison: it makes all three coordinates NaN.
-void add(const Affine& m, Float4 x, Float4 y, Float4 z, Extent& extent) noexcept {
+void add(const Affine& m, Floats x, Floats y, Floats z, Extent& extent) noexcept {
   constexpr auto kMax_mm = static_cast<float>(kCoordinateMax_mm);
   extent.wild |= (absolute(x) > kMax_mm) | (absolute(y) > kMax_mm) | (absolute(z) > kMax_mm);
   extent.valid_count -= (x == x) & (y == y) & (z == z);  // true is -1
   for (std::size_t k = 0; k < 3; ++k) {
-    const Float4 w_mm = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
+    const Floats w_mm = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
     extent.min_mm[k] = smaller(w_mm, extent.min_mm[k]);
     extent.max_mm[k] = larger(w_mm, extent.max_mm[k]);
   }
@@ -56,7 +56,7 @@ void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
   const std::ptrdiff_t stride = scan.pixel_stride_bytes / kFloatBytes;
   const std::ptrdiff_t skip = row * (scan.row_stride_bytes / kFloatBytes);
   const auto four = [stride](const float* p) {
-    return Float4{p[0], p[stride], p[2 * stride], p[3 * stride]};
+    return Floats{p[0], p[stride], p[2 * stride], p[3 * stride]};
   };
   Extent local = extent;  // in registers
   int c = 0;
@@ -66,7 +66,7 @@ void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
   }
   for (; c < scan.width_px; ++c) {
     const std::ptrdiff_t at = skip + c * stride;
-    Float4 x = kMissing4, y = kMissing4, z = kMissing4;
+    Floats x = kMissing, y = kMissing, z = kMissing;
     x[0] = scan.x_mm[at], y[0] = scan.y_mm[at], z[0] = scan.z_mm[at];
     add(work_T_scan, x, y, z, local);
   }
@@ -77,11 +77,11 @@ void write_extent(const Extent& extent, Survey& out) noexcept {
   for (int i = 0; i < kLanes; ++i) out.valid_count += extent.valid_count[i];
   if (out.valid_count == 0) return;
   const auto low = [&](std::size_t k) {
-    const Float4& v = extent.min_mm[k];
+    const Floats& v = extent.min_mm[k];
     return static_cast<double>(std::min({v[0], v[1], v[2], v[3]}));
   };
   const auto high = [&](std::size_t k) {
-    const Float4& v = extent.max_mm[k];
+    const Floats& v = extent.max_mm[k];
     return static_cast<double>(std::max({v[0], v[1], v[2], v[3]}));
   };
   out.min_mm = {low(0), low(1), low(2)};

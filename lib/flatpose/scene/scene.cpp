@@ -31,6 +31,7 @@ rectify::RectifyConfig rectify_config(const SceneConfig& config) noexcept {
   rectified.method = config.method;
   rectified.paint.jump_mm = edge_threshold_mm(config);
   rectified.paint.max_gap_mm = kPitchesPerGap * config.pitch_mm;
+  rectified.paint.vector_path = config.vector_path;
   return rectified;
 }
 

@@ -6,6 +6,7 @@
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/frames.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/image/edge.hpp"
@@ -22,6 +23,7 @@ struct SceneConfig {
   double pitch_mm = 1.0;  ///< Distance of neighbouring points of the scan, > 0.
   double step_mm = 0.0;   ///< Steps that matter, when known (0: all that stand out of the noise).
   rectify::Method method = rectify::Method::kPaint;
+  VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
 struct Scene {
