@@ -14,7 +14,7 @@ namespace {
 constexpr double kThresholdShareMin = 0.83;
 constexpr double kThresholdMax = 0.88;
 // Scores of like instances differ by less than this; what resembles the part only is farther off.
-constexpr double kScoreGap = 0.11;
+constexpr double kScoreGap = 0.13;
 
 // The same place, whatever the turn: judged at the contour's middle, which a turn of a nearly
 // symmetric part leaves.

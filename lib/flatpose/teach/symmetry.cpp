@@ -1,6 +1,7 @@
 #include "flatpose/teach/symmetry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -74,12 +75,11 @@ const model::ContourPoint* nearest(
 
 // A turn by 360/N lays the contour onto itself but for a shift t = (1 - R)(c_true - c): solved for
 // c, again and again.
-Vec3 center_of_turn(const model::Template& part, int order) noexcept {
+Vec3 center_of_turn(const model::Template& part, int order, Vec3 c) noexcept {
   constexpr int kRoundCount = 16;
   constexpr double kReachStart = 32.0;  // cells
   constexpr double kReachMin = 3.0;
   const SinCos turn = sin_cos(2.0 * kPi / order);
-  Vec3 c = middle_of(part);
   for (int round = 0; round < kRoundCount; ++round) {
     // What has no counterpart (a hole seen in part) must not take another's: the reach shrinks as
     // the centre settles.
@@ -92,11 +92,13 @@ Vec3 center_of_turn(const model::Template& part, int order) noexcept {
       const double nx = match->nx;
       const double ny = match->ny;
       const double gap = nx * (match->x_mm - q.x) + ny * (match->y_mm - q.y);
-      a00 += nx * nx;
-      a01 += nx * ny;
-      a11 += ny * ny;
-      b0 += nx * gap;
-      b1 += ny * gap;
+      const double cells = gap / part.cell_mm;
+      const double weight = 1.0 / (1.0 + cells * cells);  // a contour gone astray pulls little
+      a00 += weight * nx * nx;
+      a01 += weight * nx * ny;
+      a11 += weight * ny * ny;
+      b0 += weight * nx * gap;
+      b1 += weight * ny * gap;
     }
     const Vec3 t = solve(a00, a01, a11, b0, b1, {});
     // (1 - R)^-1 t; its determinant 2 (1 - cos) is not zero for N >= 2.
@@ -108,11 +110,21 @@ Vec3 center_of_turn(const model::Template& part, int order) noexcept {
   return c;
 }
 
+// Any turn lays it onto itself: the mean over some that share no points.
+Vec3 center_of_every_turn(const model::Template& part) noexcept {
+  constexpr std::array<int, 4> kOrders = {2, 3, 5, 7};
+  const Vec3 start = meeting_of_normals(part);
+  Vec3 sum;
+  for (const int order : kOrders) sum = sum + center_of_turn(part, order, start);
+  return (1.0 / kOrders.size()) * sum;
+}
+
 }  // namespace
 
 Vec3 symmetry_center(const model::Template& part) noexcept {
-  if (part.symmetry.order == model::kFullSymmetry) return meeting_of_normals(part);
-  return part.symmetry.order > 1 ? center_of_turn(part, part.symmetry.order) : middle_of(part);
+  if (part.symmetry.order == model::kFullSymmetry) return center_of_every_turn(part);
+  return part.symmetry.order > 1 ? center_of_turn(part, part.symmetry.order, middle_of(part))
+                                 : middle_of(part);
 }
 
 double overlap_after_turn(const model::Template& part, double x_mm, double y_mm, double angle_rad,
@@ -135,7 +147,7 @@ int likely_symmetry(const model::Template& part, double tolerance_mm) noexcept {
   constexpr double kOverlapMin = 0.93;
   constexpr int kOrderMax = 8;
   const auto looks_alike = [&](int order) {
-    const Vec3 c = center_of_turn(part, order);
+    const Vec3 c = center_of_turn(part, order, middle_of(part));
     return overlap_after_turn(part, c.x, c.y, 2.0 * kPi / order, tolerance_mm) >= kOverlapMin;
   };
   if (looks_alike(7) && looks_alike(5)) return model::kFullSymmetry;
