@@ -43,15 +43,24 @@ std::uint8_t* image_at(const SearchImages& images, int index) noexcept {
   return images.bytes.data() + static_cast<std::size_t>(index) * images.lattice.image_bytes();
 }
 
+// height_unit() of a row.
+void write_units(const float* __restrict height_mm, const SearchImages& images, int width_px,
+                 std::uint8_t* __restrict unit) noexcept {
+  const double base_mm = images.base_mm;
+  const double height_unit_mm = images.height_unit_mm;
+  for (int x = 0; x < width_px; ++x) {
+    const double value = (static_cast<double>(height_mm[x]) - base_mm) / height_unit_mm + 0.5;
+    const double bounded = value < kHeightUnitMax ? value : 1.0 * kHeightUnitMax;
+    unit[x] = static_cast<std::uint8_t>(static_cast<int>(bounded > 0.0 ? bounded : 0.0));
+  }
+}
+
 Status spread_heights(const SearchImages& images, Arena& scratch) noexcept {
   const ArenaScope scope(scratch);
   const auto unit = scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
-  for (int y = 0; y < unit.height_px; ++y) {
-    const float* filled_mm = images.filled_mm.row(y);
-    std::uint8_t* row = unit.row(y);
-    for (int x = 0; x < unit.width_px; ++x) row[x] = height_unit(filled_mm[x], images);
-  }
+  for (int y = 0; y < unit.height_px; ++y)
+    write_units(images.filled_mm.row(y), images, unit.width_px, unit.row(y));
   spread(unit, images.lattice, kOutsideUnit, image_at(images, SearchImages::kSurfaceImage));
   return Status::kOk;
 }
@@ -139,7 +148,8 @@ std::int16_t normal_unit(double component, const SearchImagesConfig& config) noe
 }
 
 std::uint8_t height_unit(double height_mm, const SearchImages& images) noexcept {
-  const double value = std::floor((height_mm - images.base_mm) / images.height_unit_mm + 0.5);
+  // The conversion rounds down what is not negative: no call of floor().
+  const double value = (height_mm - images.base_mm) / images.height_unit_mm + 0.5;
   return static_cast<std::uint8_t>(std::clamp(value, 0.0, 1.0 * kHeightUnitMax));
 }
 
