@@ -52,8 +52,7 @@ void Layout::place_or_throw(const std::shared_ptr<const Part>& part,
 }
 
 void Layout::no_room(const std::string& what) const {
-  throw std::runtime_error("scene '" + config.scene + "': no room for " + what +
-                           " in the field; enlarge the field");
+  throw std::runtime_error("scene '" + config.scene + "': no room for " + what + " in the field");
 }
 
 bool Layout::inside(const Instance& instance) const {

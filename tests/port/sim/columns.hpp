@@ -101,22 +101,26 @@ class Columns {
   void cut(int index, const Solid& solid) {
     const Instance& body = bodies_[index];
     const Pose object_T_scan = body.scan_T_object.inverse();
-    const Vec3 center_mm = body.scan_T_object * solid.sphere_center_mm();
-    const double radius_mm = solid.sphere_radius_mm();
-    const auto from_row = [&](double at_mm) {
-      return static_cast<int>(std::floor((at_mm - radius_mm) / pitch_mm_));
-    };
-    const int count = static_cast<int>(2.0 * radius_mm / pitch_mm_) + 2;
-    for (int j = from_row(center_mm.y); j < from_row(center_mm.y) + count; ++j) {
-      for (int i = from_row(center_mm.x); i < from_row(center_mm.x) + count; ++i) {
+    Vec3 low_mm{1e9, 1e9, 1e9};
+    Vec3 high_mm{-1e9, -1e9, -1e9};
+    for (const Vec2 p : body.part->outline.outer) {
+      for (const double z_mm : {-body.part->thickness_mm, height_max_mm(*body.part)}) {
+        const Vec3 q = body.scan_T_object * Vec3{p.x, p.y, z_mm};
+        low_mm = {std::min(low_mm.x, q.x), std::min(low_mm.y, q.y), std::min(low_mm.z, q.z)};
+        high_mm = {std::max(high_mm.x, q.x), std::max(high_mm.y, q.y), std::max(high_mm.z, q.z)};
+      }
+    }
+    const auto cell = [&](double at_mm) { return static_cast<int>(std::floor(at_mm / pitch_mm_)); };
+    for (int j = cell(low_mm.y); j <= cell(high_mm.y) + 1; ++j) {
+      for (int i = cell(low_mm.x); i <= cell(high_mm.x) + 1; ++i) {
         const Vec2 p = xy({i, j});
         const auto hit = [&](double z_mm, double direction) {
           const Ray ray{object_T_scan * Vec3{p.x, p.y, z_mm},
                         object_T_scan.rotation * Vec3{0, 0, direction}};
-          return solid.first_hit(ray, 0.0, 4.0 * radius_mm);
+          return solid.first_hit(ray, 0.0, high_mm.z - low_mm.z + 2.0);
         };
-        const double top_mm = center_mm.z + radius_mm + 1.0;
-        const double bottom_mm = center_mm.z - radius_mm - 1.0;
+        const double top_mm = high_mm.z + 1.0;
+        const double bottom_mm = low_mm.z - 1.0;
         const auto down = hit(top_mm, -1.0);
         const auto up = hit(bottom_mm, 1.0);
         if (!down || !up) continue;
