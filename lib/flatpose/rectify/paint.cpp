@@ -65,6 +65,7 @@ void paint_triangles(const Strip& strip, int i, std::int32_t edges, const Height
   const unsigned triangles = kTrianglesOf[static_cast<unsigned>(edges)];
   const Corner a = strip.corner_above(i), b = strip.corner_above(i + 1);
   const Corner c = strip.corner_below(i + 1), d = strip.corner_below(i);
+  if (triangles == (kAbc | kAcd)) return paint_quad(out, a, b, c, d);
   if ((triangles & kAbc) != 0) paint_triangle(out, a, b, c);
   if ((triangles & kAcd) != 0) paint_triangle(out, a, c, d);
   if ((triangles & kAbd) != 0) paint_triangle(out, a, b, d);

@@ -17,9 +17,14 @@ struct CellBox {
 };
 
 // Places are odd and centres even: the first centre right of u is (u >> bits) + 1.
-CellBox box_of(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c) noexcept {
-  const auto [u_min, u_max] = std::minmax({a.u, b.u, c.u});
-  const auto [v_min, v_max] = std::minmax({a.v, b.v, c.v});
+/// Of three or four corners.
+template <class... Corners>
+inline CellBox box_of(const HeightMap& map, const Corner& first,
+                      const Corners&... others) noexcept {
+  std::int32_t u_min = first.u, u_max = first.u, v_min = first.v, v_max = first.v;
+  ((u_min = std::min(u_min, others.u), u_max = std::max(u_max, others.u),
+    v_min = std::min(v_min, others.v), v_max = std::max(v_max, others.v)),
+   ...);
   return {std::max((u_min >> kUnitBits) + 1, 0),
           std::min((u_max >> kUnitBits) + 1, map.height_mm.width_px),
           std::max((v_min >> kUnitBits) + 1, 0),
@@ -93,6 +98,28 @@ void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
       ab += column_ab, bc += column_bc, ca += column_ca;
     }
     row_ab += down_ab, row_bc += down_bc, row_ca += down_ca;
+  }
+}
+
+void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
+                const Corner& d) noexcept {
+  const CellBox box = box_of(map, a, b, c, d);
+  for (int row = box.row_begin; row < box.row_end; ++row) {
+    for (int column = box.column_begin; column < box.column_end; ++column) {
+      const Seen a0(a, column, row), b0(b, column, row), c0(c, column, row), d0(d, column, row);
+      const std::int64_t ab = edge(a0, b0), bc = edge(b0, c0), ca = edge(c0, a0);
+      const std::int64_t cd = edge(c0, d0), da = edge(d0, a0), ac = -ca;
+      const bool in_abc = same_side(ab, bc, ca) & (ab + bc + ca != 0);
+      const bool in_acd = same_side(ac, cd, da) & (ac + cd + da != 0);
+      if (in_abc) {
+        put(map, column, row, blend(bc, a.z_mm, ca, b.z_mm, ab, c.z_mm),
+            nearest_source(a0, b0, c0));
+      }
+      if (in_acd) {
+        put(map, column, row, blend(cd, a.z_mm, da, c.z_mm, ac, d.z_mm),
+            nearest_source(a0, c0, d0));
+      }
+    }
   }
 }
 

@@ -30,4 +30,8 @@ inline void put(const HeightMap& map, int column, int row, float z_mm,
 void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
                     const Corner& c) noexcept;
 
+/// Paints the triangles a, b, c and a, c, d as paint_triangle() would one after the other.
+void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
+                const Corner& d) noexcept;
+
 }  // namespace flatpose::rectify
