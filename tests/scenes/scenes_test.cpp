@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
 const std::vector<std::string> kOtherScenes{"medium", "high", "buried"};
 
 INSTANTIATE_TEST_SUITE_P(
-    Short_OtherParts, SceneWithTarget,
+    OtherParts, SceneWithTarget,
     testing::Values(ShortCase{"bracket", "bracket", "standard", kOtherScenes, 70},
                     ShortCase{"flange", "flange", "standard", kOtherScenes, 71},
                     ShortCase{"washer", "washer", "standard", kOtherScenes, 72},
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                     ShortCase{"plate", "plate", "standard", kOtherScenes, 75}),
     case_name);
 
-INSTANTIATE_TEST_SUITE_P(Short_WorseSensors, SceneWithTarget,
+INSTANTIATE_TEST_SUITE_P(WorseSensors, SceneWithTarget,
                          testing::Values(ShortCase{"noise", "pad", "noise", {"medium", "high"}, 80},
                                          ShortCase{"lost", "pad", "lost", {"medium", "high"}, 81},
                                          ShortCase{"half", "pad", "half", {"medium", "high"}, 82}),
