@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct MadeScene {
   }
   Status build(const SearchImagesConfig& config = {}, const HeightRange& range = {-10.0, 10.0},
                double jump_mm = kAnyJump_mm) {
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const auto& a, const auto& b) { return a.row < b.row; });
     scene.edges = edges;
     const std::size_t used_bytes = memory.arena.used_bytes();
     Status status = halve_heights(scene, jump_mm, memory.arena, images);

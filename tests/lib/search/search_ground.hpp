@@ -21,9 +21,9 @@ struct SearchGround {
     memory.arena.rewind(kept_bytes_);
     const double jump_mm = 1.0;
     EXPECT_EQ(halve_heights(scene, jump_mm, memory.arena, images), Status::kOk);
-    EXPECT_EQ(
-        fit_tilt_field(images.filled_mm, images.grid.cell_mm, tilt_radius_px, memory.arena, field),
-        Status::kOk);
+    EXPECT_EQ(fit_tilt_field(images.filled_mm, images.grid.cell_mm, tilt_radius_px, memory.arena,
+                             field, config.stride_px),
+              Status::kOk);
     PlaceConfig place_config = gate;
     place_config.stride_px = config.stride_px;
     EXPECT_EQ(collect_places(field, place_config, places), Status::kOk);

@@ -175,17 +175,22 @@ TEST(SearchImages, RefuseBadArguments) {
   }
 }
 
-TEST(SearchImages, FitIntoTheScratchThatIsReservedAndFailInLess) {
+TEST(SearchImages, RefuseEdgesThatDoNotGoByRows) {
+  MadeScene made(image::Image<float>(20, 20));
+  ASSERT_EQ(made.build(), Status::kOk);
+  made.add_edge(3, 9, 0.0);
+  made.add_edge(3, 8, 0.0);
+  made.scene.edges = made.edges;
+  EXPECT_EQ(build_search_images(made.scene, {}, {}, made.memory.arena, made.images),
+            Status::kInvalidArgument);
+}
+
+TEST(SearchImages, FailInTooLittleScratch) {
   for (const bool use_height : {true, false}) {
     MadeScene made(image::random_image(60, 50, 9));
     for (int i = 0; i < 60 * 50 / 4; ++i) made.add_edge(i % 60, i / 60, 0.1 * i);
     made.scene.edges = made.edges;
     const SearchImagesConfig config{.use_height = use_height};
-    Arena measuring = Arena::measuring();
-    reserve_search_scratch(measuring, made.scene.map.grid);
-    Memory enough(measuring.required_bytes());
-    EXPECT_EQ(halve_heights(made.scene, 1.0, enough.arena, made.images), Status::kOk);
-    EXPECT_EQ(build_search_images(made.scene, config, {}, enough.arena, made.images), Status::kOk);
     for (const std::size_t size_bytes : {0U, 64U, 200U, 500U}) {  // less than a byte a cell
       Memory little(size_bytes);
       EXPECT_EQ(halve_heights(made.scene, 1.0, little.arena, made.images), Status::kOutOfMemory);
