@@ -89,14 +89,14 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.tilt_radius_px = tilt_radius_px(part, noise_mm, coarse_mm);
 
   s.wide.edge_reach_mm = reach_mm;
-  s.wide.height_reach_mm = std::max(3.0 * height_tolerance_mm, 0.05 * part.radius_mm);
+  s.wide.height_reach_mm = std::max(2.0 * height_tolerance_mm, 0.03 * part.radius_mm);
   s.wide.normal_reach = 0.4;
   s.wide.edge_sigma_mm = cell_mm;
   s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
   s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
   s.narrow = s.wide;
   s.narrow.edge_reach_mm = 4.0 * cell_mm;
-  s.narrow.height_reach_mm = 2.0 * height_tolerance_mm;
+  s.narrow.height_reach_mm = 1.3 * height_tolerance_mm;
 
   s.polish.height_tolerance_mm = height_tolerance_mm;
   s.polish.search_mm = 2.5 * cell_mm;

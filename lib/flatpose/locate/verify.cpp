@@ -147,13 +147,21 @@ Verification verify(const model::Template& part, const refine::FineImages& image
                     ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
                     const VerifyConfig& config) noexcept {
   Verification out;
+  double area = 0.0;
+  double visible_area = 0.0;
+  double confirmed_area = 0.0;
   for (const model::SurfacePoint& p : part.surface_points()) {
+    const double weight_of_area = p.weight;
+    area += weight_of_area;
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Sight seen = sight(images, q_mm, config.height_tolerance_mm);
     if (seen == Sight::kNothing || seen == Sight::kAbove) continue;
     ++out.surface.visible_count;
+    visible_area += weight_of_area;
     if (is_claimed(images, claimed, q_mm)) ++out.surface.claimed_count;
-    if (seen == Sight::kAt) ++out.surface.confirmed_count;
+    if (seen != Sight::kAt) continue;
+    ++out.surface.confirmed_count;
+    confirmed_area += weight_of_area;
   }
   const double probe_mm = kProbe_px * images.grid.cell_mm;
   const DirectionWeight weight(part);
@@ -178,8 +186,8 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
     confirmed_weight += verdict.agreement * weight(p);
   }
-  out.visible = static_cast<double>(out.surface.visible_count) / part.surface_count;
-  out.score = surface_agreement(share(out.surface.confirmed_count, out.surface.visible_count)) *
+  out.visible = share(visible_area, area);
+  out.score = surface_agreement(share(confirmed_area, visible_area)) *
               share(confirmed_weight, visible_weight);
   return out;
 }

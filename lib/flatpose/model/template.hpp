@@ -38,6 +38,7 @@ struct SurfacePoint {
   float z_mm = 0.0F;
   float nx = 0.0F;  ///< Unit normal; nz = sqrt(1 - nx^2 - ny^2).
   float ny = 0.0F;
+  float weight = 1.0F;  ///< Area that it stands for, against the mean of all.
 };
 
 /// A place on the surface, as far from every edge as the part allows, where the search reads the

@@ -123,7 +123,7 @@ void visit(Stream& stream, T& part) noexcept {
   }
   for (int i = 0; i < part.surface_count; ++i) {
     auto& p = part.surface[i];
-    for (auto* value : {&p.x_mm, &p.y_mm, &p.z_mm, &p.nx, &p.ny}) stream.field(*value);
+    for (auto* value : {&p.x_mm, &p.y_mm, &p.z_mm, &p.nx, &p.ny, &p.weight}) stream.field(*value);
   }
   for (int i = 0; i < part.anchor_count; ++i) {
     auto& a = part.anchors[i];
@@ -152,6 +152,7 @@ bool clouds_are_valid(const Template& part) noexcept {
     }
     const double length2 = static_cast<double>(p.nx) * p.nx + static_cast<double>(p.ny) * p.ny;
     if (!is_finite_within(length2, 0.0, 1.0)) return false;
+    if (!is_finite_within(p.weight, 0.0, kSurfacePointCountMax)) return false;
   }
   for (int i = 0; i < part.anchor_count; ++i) {
     const Anchor& a = part.anchors[i];

@@ -13,7 +13,7 @@
 
 namespace flatpose::model {
 
-inline constexpr std::uint32_t kTemplateFileVersion = 1;
+inline constexpr std::uint32_t kTemplateFileVersion = 2;
 /// Enough for any template.
 inline constexpr std::size_t kTemplateFileBytesMax = 32 * 1024;
 

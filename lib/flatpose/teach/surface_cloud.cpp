@@ -83,6 +83,27 @@ Status sample_surface(const scene::Scene& scene, const PartMask& mask, double no
   return out.count >= kSampleCountMin ? Status::kOk : Status::kTooFewPoints;
 }
 
+// Each sample of the part's area, the margin too, goes to the point nearest to it.
+void weigh_by_area(const SurfaceSamples& samples, std::span<const int> candidates,
+                   std::span<const int> order, model::Template& part) noexcept {
+  const float share = static_cast<float>(part.surface_count) / static_cast<float>(samples.count);
+  for (int k = 0; k < part.surface_count; ++k) part.surface[k].weight = 0.0F;
+  for (int i = 0; i < samples.count; ++i) {
+    int nearest = 0;
+    double nearest2 = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < part.surface_count; ++k) {
+      const SurfaceSample& p = samples.samples[candidates[order[k]]];
+      const double dx = p.x_mm - samples.samples[i].x_mm;
+      const double dy = p.y_mm - samples.samples[i].y_mm;
+      const double d2 = dx * dx + dy * dy;
+      if (d2 >= nearest2) continue;
+      nearest2 = d2;
+      nearest = k;
+    }
+    part.surface[nearest].weight += share;
+  }
+}
+
 Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_object,
                            double margin_mm, Arena& scratch, model::Template& part) noexcept {
   const ArenaScope scope(scratch);
@@ -103,7 +124,12 @@ Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_obj
     const SurfaceSample& q = samples.samples[candidates[b]];
     return (p.x_mm - q.x_mm) * (p.x_mm - q.x_mm) + (p.y_mm - q.y_mm) * (p.y_mm - q.y_mm);
   };
-  part.surface_count = spread_order(candidate_count, 0, distance, nearest, order);
+  // A border mirrors the points: the nearest of the other side is twice as far as the border.
+  const auto border = [&](int i) {
+    const double mirrored_mm = 2.0 * samples.clearance_mm[candidates[i]];
+    return mirrored_mm * mirrored_mm;
+  };
+  part.surface_count = spread_order_within(candidate_count, border, distance, nearest, order);
   const Pose object_T_work = work_T_object.inverse();
   for (int k = 0; k < part.surface_count; ++k) {
     const SurfaceSample& s = samples.samples[candidates[order[k]]];
@@ -114,6 +140,7 @@ Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_obj
     part.surface[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
                        static_cast<float>(n.x), static_cast<float>(n.y)};
   }
+  weigh_by_area(samples, candidates, order, part);
   return Status::kOk;
 }
 
