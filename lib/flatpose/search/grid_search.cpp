@@ -5,7 +5,6 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/image/pyramid.hpp"
-#include "flatpose/scene/scene.hpp"
 
 namespace flatpose::search {
 namespace {
@@ -214,20 +213,15 @@ bool is_valid(const GridSearchConfig& config) noexcept {
 void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
   const rectify::Grid coarse = image::halved(fine);
   const Lattice widest = make_lattice(coarse.width_px, coarse.height_px, 1, 1);
-  const std::size_t cell_count =
-      static_cast<std::size_t>(coarse.width_px) * static_cast<std::size_t>(coarse.height_px);
   const std::size_t place_count =
       static_cast<std::size_t>(widest.padded_width()) * static_cast<std::size_t>(coarse.height_px);
   {
-    const ArenaScope scope(arena);  // build_search_images: the edges, masks and distances
-    const std::size_t fine_count =
-        static_cast<std::size_t>(fine.width_px) * static_cast<std::size_t>(fine.height_px);
-    (void)arena.take<image::EdgePoint>(fine_count / scene::kCellsPerEdge + 1);
-    for (int k = 0; k < 2 * image::kOctantCount; ++k) (void)arena.take<std::uint8_t>(cell_count);
+    const ArenaScope scope(arena);
+    reserve_image_scratch(arena, coarse);
   }
   {
-    const ArenaScope scope(arena);  // fit_tilt_field
-    for (int k = 0; k < 3; ++k) (void)arena.take<double>(cell_count);
+    const ArenaScope scope(arena);
+    reserve_tilt_scratch(arena, coarse.width_px);
   }
   (void)take_search_memory(arena, place_count);
 }

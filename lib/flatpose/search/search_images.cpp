@@ -65,25 +65,34 @@ Status spread_heights(const SearchImages& images, Arena& scratch) noexcept {
   return Status::kOk;
 }
 
+struct Normals {
+  ImageView<float> x;
+  ImageView<float> y;
+  ImageView<std::uint8_t> unit;
+};
+
+Normals take_normals(Arena& arena, int width_px, int height_px) noexcept {
+  return {arena.take_image<float>(width_px, height_px),
+          arena.take_image<float>(width_px, height_px),
+          arena.take_image<std::uint8_t>(width_px, height_px)};
+}
+
 Status spread_normals(const SearchImages& images, Arena& scratch) noexcept {
   const ArenaScope scope(scratch);
   const int width_px = images.grid.width_px;
   const int height_px = images.grid.height_px;
-  const ImageView<float> nx = scratch.take_image<float>(width_px, height_px);
-  const ImageView<float> ny = scratch.take_image<float>(width_px, height_px);
-  const auto unit = scratch.take_image<std::uint8_t>(width_px, height_px);
+  const Normals normals = take_normals(scratch, width_px, height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
-  if (const Status s = image::normal_map(images.filled_mm, images.grid.cell_mm, nx, ny);
-      s != Status::kOk)
-    return s;
+  const Status s = image::normal_map(images.filled_mm, images.grid.cell_mm, normals.x, normals.y);
+  if (s != Status::kOk) return s;
   for (int axis = 0; axis < 2; ++axis) {
-    const ImageView<float> component = axis == 0 ? nx : ny;
+    const ImageView<float> component = axis == 0 ? normals.x : normals.y;
     for (int y = 0; y < height_px; ++y) {
       for (int x = 0; x < width_px; ++x) {
-        unit(x, y) = static_cast<std::uint8_t>(normal_unit(component(x, y), images.config));
+        normals.unit(x, y) = static_cast<std::uint8_t>(normal_unit(component(x, y), images.config));
       }
     }
-    spread(unit, images.lattice, kOutsideUnit,
+    spread(normals.unit, images.lattice, kOutsideUnit,
            image_at(images, SearchImages::kSurfaceImage + axis));
   }
   return Status::kOk;
@@ -162,6 +171,21 @@ SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcep
   images.bytes =
       arena.take<std::uint8_t>(SearchImages::kImageCountMax * image_bytes_max(width_px, height_px));
   return images;
+}
+
+void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
+  const int width_px = coarse.width_px;
+  const int height_px = coarse.height_px;
+  {
+    const ArenaScope scope(arena);  // halve_heights
+    (void)arena.take_image<std::uint8_t>(width_px, height_px);
+    image::reserve_fill_scratch(arena, width_px);
+  }
+  {
+    const ArenaScope scope(arena);  // spread_edge_costs
+    (void)arena.take_image<image::OctantCell>(width_px, height_px);
+  }
+  (void)take_normals(arena, width_px, height_px);  // and fewer for the heights
 }
 
 Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,

@@ -79,6 +79,10 @@ struct SearchImages {
 /// Takes the memory of the coarse level, of half the resolution of `fine`, for any config.
 [[nodiscard]] SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcept;
 
+/// Takes (and leaves taken) the scratch of the two calls below on the coarse level, also from a
+/// measuring arena.
+void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
+
 /// Halves the scene's heights; heights more than `jump_mm` apart are not averaged.
 /// Fails: kOutOfMemory (scratch), kTooFewPoints (nothing valid).
 [[nodiscard]] Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
@@ -86,7 +90,7 @@ struct SearchImages {
 
 /// Fills the bytes. `range` is where places lie: heights beyond it by more than the tolerance are
 /// told apart no further.
-/// Fails: kOutOfMemory (scratch), kInvalidArgument (config).
+/// Fails: kOutOfMemory (scratch), kInvalidArgument (config; edges that do not go by rows).
 [[nodiscard]] Status build_search_images(const scene::Scene& scene,
                                          const SearchImagesConfig& config, const HeightRange& range,
                                          Arena& scratch, SearchImages& images) noexcept;

@@ -158,6 +158,10 @@ TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept {
       arena.take_image<float>(width_px, height_px), arena.take_image<float>(width_px, height_px)};
 }
 
+void reserve_tilt_scratch(Arena& arena, int width_px) noexcept {
+  (void)Fitter(arena, width_px, kTiltWindowRadiusMax_px, 1);  // strides make the rows shorter
+}
+
 Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
                       Arena& scratch, TiltField& field, int stride_px) noexcept {
   if (radius_px < 1 || radius_px > kTiltWindowRadiusMax_px || stride_px < 1 || !(cell_mm > 0.0))

@@ -25,6 +25,10 @@ struct TiltField {
 
 [[nodiscard]] TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept;
 
+/// Takes (and leaves taken) the scratch of fit_tilt_field() at its widest window on a map of this
+/// width, also from a measuring arena.
+void reserve_tilt_scratch(Arena& arena, int width_px) noexcept;
+
 /// Fits a plane around every cell of a filled height map whose column and row are multiples of
 /// `stride_px`; other cells of the field stay as they are.
 /// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell fitted.  Memory: of `scratch` some
