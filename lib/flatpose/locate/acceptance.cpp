@@ -26,13 +26,19 @@ bool Acceptance::consider(const refine::PolishResult& polished) noexcept {
     note_rival(v.score, pose);
     return false;
   }
-  if (v.score < settings_.score_threshold || v.visible < config_.min_visible || !is_allowed(pose)) {
+  if (!may_match(polished, v)) {
     note_rejected(v.score);
     return false;
   }
   result_.matches[result_.match_count++] = to_match(polished, v);
   claim(part_, fine_, pose, settings_.verify, claimed_);
   return true;
+}
+
+bool Acceptance::may_match(const refine::PolishResult& polished,
+                           const Verification& v) const noexcept {
+  return v.score >= settings_.score_threshold && v.visible >= config_.min_visible &&
+         is_allowed(polished.work_T_object);
 }
 
 // A second pose in the place of a match that is no equivalent of it.

@@ -30,6 +30,9 @@ class Acceptance {
   /// Takes a polished pose as the next match, when it is one. A pose that is none may become one
   /// later, when parts that adjoin it have been accepted.
   [[nodiscard]] bool consider(const refine::PolishResult& polished) noexcept;
+  /// Whether nothing but other matches keeps a pose from being one.
+  [[nodiscard]] bool may_match(const refine::PolishResult& polished,
+                               const Verification& v) const noexcept;
   /// Remembers how near a pose came that is no match.
   void note_rejected(double score) noexcept;
   /// Puts the matches in the order asked for.

@@ -46,11 +46,12 @@ class Pipeline {
     if (const Status s = look(); s != Status::kOk || is_over_) return s;
     if (const Status s = build_images(); s != Status::kOk) return s;
     for (int anchor = 0; anchor < part_.anchor_count; ++anchor) {
-      if (anchor > 0 && (acceptance_.is_full() || is_late())) break;
+      if (anchor > 0 && (has_enough() || is_late())) break;
       if (const Status s = search(anchor); s != Status::kOk) return s;
       refine_all();
-      accept();
+      polish_best();
     }
+    accept();
     report();
     return Status::kOk;
   }
@@ -73,6 +74,7 @@ class Pipeline {
     const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
     settings_.search.vector_path = limits_.vector_path;
+    settings_.scene.vector_path = limits_.vector_path;
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
     result_.timings.rectify_us = lap();
     if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
@@ -107,7 +109,7 @@ class Pipeline {
   Status build_images() noexcept {
     work_ = take_workspace(arena_, scene_.map.grid);
     if (arena_.failed()) return Status::kOutOfMemory;
-    Status s = refine::build_fine_images(scene_, arena_, work_.fine);
+    Status s = refine::build_fine_images(scene_, work_.fine);
     if (s != Status::kOk) return s;
     s = build_coarse_images();
     for (int y = 0; y < work_.claimed.height_px; ++y)
@@ -121,7 +123,8 @@ class Pipeline {
         search::halve_heights(scene_, settings_.verify.height_tolerance_mm, arena_, work_.coarse);
     if (s != Status::kOk) return s;
     s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
-                               settings_.tilt_radius_px, arena_, work_.tilt);
+                               settings_.tilt_radius_px, arena_, work_.tilt,
+                               settings_.places.stride_px);
     if (s != Status::kOk) return s;
     s = search::collect_places(work_.tilt, settings_.places, work_.places);
     if (s != Status::kOk) return s;
@@ -133,7 +136,7 @@ class Pipeline {
 
   Status search(int anchor) noexcept {
     const std::size_t wanted =
-        static_cast<std::size_t>(std::min(kCandidateCountMax, 24 + 6 * config_.max_matches));
+        static_cast<std::size_t>(std::min(kCandidateCountMax, 42 + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
         search::grid_search(work_.coarse, work_.tilt, work_.places, part_, anchor, settings_.search,
                             arena_, work_.candidates.first(wanted));
@@ -153,8 +156,8 @@ class Pipeline {
     lm.iteration_limit = 15;
     lm.step_tolerance = 1e-5;
     lm.cost_tolerance = 1e-5;
-    instance_count_ = 0;
-    for (int i = 0; i < candidate_count_ && !is_late(); ++i) {
+    for (int i = 0; i < candidate_count_ && instance_count_ < kInstanceCountMax && !is_late();
+         ++i) {
       // A candidate that does not hold even loosely is not worth its refinement.
       const Pose& start = work_.candidates[i].work_T_object;
       if (verify(part_, work_.fine, {}, start, settings_.screen).score <
@@ -169,8 +172,41 @@ class Pipeline {
       instance.work_T_object = second.x;
       instance.verification = verify(part_, work_.fine, {}, second.x, settings_.verify);
     }
-    std::sort(work_.instances.begin(), work_.instances.begin() + instance_count_, precedes);
+    sort_instances();
     result_.timings.refine_us += lap();
+  }
+
+  void sort_instances() noexcept {
+    std::sort(work_.instances.begin(), work_.instances.begin() + instance_count_, precedes);
+  }
+
+  // The last step for those likely to be asked for: what they are worth on the raw points decides
+  // over their order.
+  void polish_best() noexcept {
+    const int wanted = 6 + 2 * config_.max_matches;
+    int count = 0;
+    for (int i = 0; i < instance_count_ && count < wanted && !is_late(); ++i)
+      count += polish(work_.instances[i]) ? 1 : 0;
+    sort_instances();
+    result_.timings.verify_us += lap();
+  }
+
+  // Whether as many as are asked for are beyond doubt, each in a place of its own: other anchors
+  // are not searched then.
+  [[nodiscard]] bool has_enough() const noexcept {
+    constexpr double kBeyondDoubtShare = 0.95;
+    const double enough = kBeyondDoubtShare * part_.self_score;
+    int count = 0;
+    for (int i = 0; i < instance_count_; ++i) {
+      const Instance& instance = work_.instances[i];
+      const bool sure = instance.is_polished && instance.verification.score >= enough &&
+                        acceptance_.may_match(instance.polished, instance.verification);
+      if (!sure) continue;
+      bool is_new = true;
+      for (int j = 0; j < i && is_new; ++j) is_new = !is_same_place(work_.instances[j], instance);
+      count += is_new ? 1 : 0;
+    }
+    return count >= config_.max_matches;
   }
 
   [[nodiscard]] bool is_known(const Pose& pose) const noexcept {

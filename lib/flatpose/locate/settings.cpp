@@ -39,7 +39,7 @@ int tilt_radius_px(const model::Template& part, double noise_mm, double coarse_m
   double clearance_mm = part.anchors[0].clearance_mm;
   for (int i = 1; i < part.anchor_count; ++i)
     clearance_mm = std::min(clearance_mm, static_cast<double>(part.anchors[i].clearance_mm));
-  const double widest = std::min(kDiscShare * clearance_mm / coarse_mm, 8.0);
+  const double widest = std::min(kDiscShare * clearance_mm / coarse_mm + 0.25, 8.0);
   int radius_px = 3;
   for (; radius_px < widest; ++radius_px) {
     const double n = (2.0 * radius_px + 1.0) * (2.0 * radius_px + 1.0);
@@ -90,12 +90,14 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
 
   s.wide.edge_reach_mm = reach_mm;
   s.wide.height_reach_mm = std::max(2.0 * height_tolerance_mm, 0.03 * part.radius_mm);
+  s.wide.covering_reach_mm = 1.5 * height_tolerance_mm;
   s.wide.normal_reach = 0.4;
   s.wide.edge_sigma_mm = cell_mm;
   s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
   s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
   s.narrow = s.wide;
   s.narrow.edge_reach_mm = 4.0 * cell_mm;
+  s.narrow.covering_reach_mm = height_tolerance_mm;
   s.narrow.height_reach_mm = 1.3 * height_tolerance_mm;
 
   s.polish.height_tolerance_mm = height_tolerance_mm;
@@ -103,6 +105,7 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
 
   s.verify.height_tolerance_mm = height_tolerance_mm;
   s.screen.height_tolerance_mm = s.wide.height_reach_mm;
+  s.screen.contradiction_weight = 1.0;
   s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;
   s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;

@@ -89,9 +89,8 @@ double share(double confirmed, double visible) noexcept {
 
 // Noise does not open a surface: what is missing of it is a hole or an end that the part does not
 // have, small as it may be beside the rest.
-double surface_agreement(double confirmed_share) noexcept {
-  constexpr double kContradictionWeight = 3.0;
-  return std::max(0.0, 1.0 - kContradictionWeight * (1.0 - confirmed_share));
+double surface_agreement(double confirmed_share, double contradiction_weight) noexcept {
+  return std::max(0.0, 1.0 - contradiction_weight * (1.0 - confirmed_share));
 }
 
 // What a contour point weighs: as much as its direction is rare. The two ends of a bar are all that
@@ -187,7 +186,7 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     confirmed_weight += verdict.agreement * weight(p);
   }
   out.visible = share(visible_area, area);
-  out.score = surface_agreement(share(confirmed_area, visible_area)) *
+  out.score = surface_agreement(share(confirmed_area, visible_area), config.contradiction_weight) *
               share(confirmed_weight, visible_weight);
   return out;
 }

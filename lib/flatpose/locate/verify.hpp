@@ -15,6 +15,8 @@ struct VerifyConfig {
   double height_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
   double edge_tolerance_px =
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
+  /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.
+  double contradiction_weight = 3.0;
 };
 
 struct Evidence {

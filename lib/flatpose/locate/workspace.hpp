@@ -17,7 +17,8 @@
 
 namespace flatpose::locate {
 
-inline constexpr int kCandidateCountMax = 192;
+inline constexpr int kCandidateCountMax = 192;  ///< Of one anchor.
+inline constexpr int kInstanceCountMax = 2 * kCandidateCountMax;
 
 /// A candidate after refinement.
 struct Instance {

@@ -16,7 +16,7 @@ namespace flatpose::model {
 
 inline constexpr int kContourPointCountMax = 512;
 inline constexpr int kSurfacePointCountMax = 512;
-inline constexpr int kAnchorCountMax = 4;
+inline constexpr int kAnchorCountMax = 8;
 inline constexpr int kNameBytesMax = 63;
 
 /// A point where the upper side of the part ends.

@@ -43,10 +43,5 @@ struct BoundedDistance {
 
 /// Fills the images from the scene.  Cost: four passes over the map.
 [[nodiscard]] Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept;
-/// The same for callers that still bring scratch, which is not touched.
-[[nodiscard]] inline Status build_fine_images(const scene::Scene& scene, Arena&,
-                                              FineImages& images) noexcept {
-  return build_fine_images(scene, images);
-}
 
 }  // namespace flatpose::refine

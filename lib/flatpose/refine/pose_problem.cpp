@@ -85,6 +85,8 @@ void PoseProblem::add_surface(const Pose& pose, NormalEquations<6>* equations) c
   const double height_weight = squared_inverse(config_.height_sigma_mm);
   const double normal_weight = squared_inverse(config_.normal_sigma);
   const RobustLoss height_loss = RobustLoss::tukey(config_.height_reach_mm);
+  // What hides the part lies above it, and may lie on it: less of a height above is believed.
+  const RobustLoss covering_loss = RobustLoss::tukey(config_.covering_reach_mm);
   const RobustLoss normal_loss = RobustLoss::tukey(config_.normal_reach);
   const int count = std::min(config_.surface_count, part_.surface_count);
   for (int i = 0; i < count; ++i) {
@@ -92,8 +94,8 @@ void PoseProblem::add_surface(const Pose& pose, NormalEquations<6>* equations) c
     const NumberVec3 q = placed(pose, {p.x_mm, p.y_mm, p.z_mm});
     const Number column = (q.x - images_.grid.x0_mm) / images_.grid.cell_mm;
     const Number row = (q.y - images_.grid.y0_mm) / images_.grid.cell_mm;
-    equations->add(image::bilinear(images_.filled_mm, column, row) - q.z, height_weight,
-                   height_loss);
+    const Number above_mm = image::bilinear(images_.filled_mm, column, row) - q.z;
+    equations->add(above_mm, height_weight, above_mm.value > 0.0 ? covering_loss : height_loss);
     const double nz = std::sqrt(
         std::max(0.0, 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny));
     const NumberVec3 n = rotated(pose.rotation, turned({p.nx, p.ny, nz}));

@@ -16,8 +16,9 @@ namespace flatpose::refine {
 struct PoseProblemConfig {
   int contour_count = 128;  ///< Points of the dense set that take part.
   int surface_count = 64;
-  double edge_reach_mm = 4.0;    ///< Edges farther than this are no evidence (Tukey's scale).
-  double height_reach_mm = 2.0;  ///< The same for heights.
+  double edge_reach_mm = 4.0;      ///< Edges farther than this are no evidence (Tukey's scale).
+  double height_reach_mm = 2.0;    ///< The same for heights below the part.
+  double covering_reach_mm = 2.0;  ///< For heights above it: what hides a part may lie on it.
   double normal_reach = 0.3;
   double edge_sigma_mm = 0.5;  ///< Standard deviations, which weigh the three kinds.
   double height_sigma_mm = 0.4;

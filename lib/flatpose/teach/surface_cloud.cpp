@@ -153,14 +153,17 @@ Status place_anchors(const SurfaceSamples& samples, const Pose& work_T_object, d
   };
   // The first is the widest flat disc. A fallback lies as far from those before it as a disc of
   // some width can, or it would be covered with them.
-  constexpr double kFallbackShare = 0.45;
+  constexpr double kFallbackShare = 0.6;
+  constexpr double kFallbackCells = 10.0;  // wide enough to read a tilt from
+  constexpr double kApartShare = 0.7;
   const auto worth = [&](int i) {
     const Vec3 p = object_of(i);
     const double clearance_mm = samples.clearance_mm[i];
     if (std::fabs(p.z) > tolerance_mm) return 0.0;
     if (part.anchor_count == 0) return clearance_mm;
     const double first_mm = part.anchors[0].clearance_mm;
-    if (clearance_mm < kFallbackShare * first_mm) return 0.0;
+    if (clearance_mm < std::min(kFallbackShare * first_mm, kFallbackCells * part.cell_mm))
+      return 0.0;
     double apart_mm = std::numeric_limits<double>::max();
     for (int k = 0; k < part.anchor_count; ++k) {
       const double dx = p.x - part.anchors[k].x_mm;
@@ -168,7 +171,7 @@ Status place_anchors(const SurfaceSamples& samples, const Pose& work_T_object, d
       apart_mm = std::min(apart_mm, std::sqrt(dx * dx + dy * dy));
     }
     // What lies within a disc already placed is no other place.
-    return apart_mm > first_mm ? apart_mm + clearance_mm : 0.0;
+    return apart_mm > kApartShare * first_mm ? apart_mm + clearance_mm : 0.0;
   };
   part.anchor_count = 0;
   for (int k = 0; k < model::kAnchorCountMax; ++k) {
