@@ -89,7 +89,8 @@ template <class Check>
 void over_random_grounds(unsigned seed, double slope_max, int levels, const Check& check) {
   std::mt19937 random(seed);
   for (int trial = 0; trial < 32; ++trial) {
-    SearchImagesConfig images{1 + trial % kStrideMax_px, 24};
+    // With little reach some points are left out, at some angles more than at others.
+    SearchImagesConfig images{1 + trial % kStrideMax_px, integer(random, 3, 20)};
     images.use_height = trial / 4 % 4 != 3;
     images.use_directions = trial / 4 % 4 != 2;
     MadeGround ground(integer(random, 1, 24 * images.stride_px),
