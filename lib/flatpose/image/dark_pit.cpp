@@ -82,9 +82,8 @@ void mark_level_runs(ImageView<const std::uint8_t> missing, ImageView<const floa
 
 // A run of a column has ended above row `end`: what lies in it is lowered where rows and columns
 // agree.
-void lower_run(ImageView<const std::uint8_t> missing, ImageView<const std::uint8_t> marks,
-               const DarkPitConfig& config, int x, int begin, int end,
-               ImageView<float> filled_mm) noexcept {
+void lower_run(ImageView<const std::uint8_t> marks, const DarkPitConfig& config, int x, int begin,
+               int end, ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
   if (begin < kFirm_px || end + kFirm_px > missing.height_px) return;
   if (!is_firm(missing.row(begin - 1) + x, -missing.stride_px) ||
       !is_firm(missing.row(end) + x, missing.stride_px)) {
@@ -96,7 +95,9 @@ void lower_run(ImageView<const std::uint8_t> missing, ImageView<const std::uint8
   const float highest_mm = std::max(above_mm, below_mm);
   for (int y = begin; y < end; ++y) {
     float& z_mm = filled_mm(x, y);  // the lowest of the four sides
-    if (marks(x, y) != 0 && highest_mm - z_mm <= config.level_mm) z_mm -= config.drop_mm;
+    if (marks(x, y) == 0 || highest_mm - z_mm > config.level_mm) continue;
+    z_mm -= config.drop_mm;
+    missing(x, y) = kDarkPit;
   }
 }
 
@@ -106,8 +107,8 @@ void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcep
   (void)lay_out(arena, width_px, height_px);
 }
 
-Status lower_dark_pits(ImageView<const std::uint8_t> missing, const DarkPitConfig& config,
-                       Arena& scratch, ImageView<float> filled_mm) noexcept {
+Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<std::uint8_t> missing,
+                       ImageView<float> filled_mm) noexcept {
   if (!same_shape(missing, filled_mm)) return Status::kShapeMismatch;
   if (!(config.level_mm > 0.0F) || !(config.drop_mm > config.level_mm))
     return Status::kInvalidArgument;
@@ -128,7 +129,7 @@ Status lower_dark_pits(ImageView<const std::uint8_t> missing, const DarkPitConfi
         continue;
       }
       if (run_px >= width_min_px)
-        lower_run(missing, s.level_in_row, config, x, y - run_px, y, filled_mm);
+        lower_run(s.level_in_row, config, x, y - run_px, y, missing, filled_mm);
       run_px = 0;
     }
   }

@@ -11,6 +11,9 @@
 
 namespace flatpose::image {
 
+/// What `missing` holds in a dark pit.
+inline constexpr std::uint8_t kDarkPit = 2;
+
 struct DarkPitConfig {
   float level_mm = 1.0F;  ///< Sides this much apart are about the same height; > 0.
   float drop_mm = 4.0F;   ///< How far below its sides a pit is put; > level_mm.
@@ -19,14 +22,14 @@ struct DarkPitConfig {
 /// Takes (and leaves taken) the scratch of lower_dark_pits, also from a measuring arena.
 void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcept;
 
-/// Lowers the missing cells whose four sides (left, right, above, below) are about level, where the
-/// gap is too wide in both axes for points that were lost one by one: how likely these are is read
-/// off the image's own single missing cells.
-/// Shape: `missing` and `filled_mm` alike, as fill_missing writes them.  Cost: three passes over
-/// `missing`.  Memory: `scratch`, given back.  Fails: kShapeMismatch, kInvalidArgument (config),
-/// kOutOfMemory.  Thread: reentrant.
-[[nodiscard]] Status lower_dark_pits(ImageView<const std::uint8_t> missing,
-                                     const DarkPitConfig& config, Arena& scratch,
+/// Lowers, and marks as kDarkPit, the missing cells whose four sides (left, right, above, below)
+/// are about level, where the gap is too wide in both axes for points that were lost one by one:
+/// how likely these are is read off the image's own single missing cells. Shape: `missing` and
+/// `filled_mm` alike, as fill_missing writes them.  Cost: three passes over `missing`.  Memory:
+/// `scratch`, given back.  Fails: kShapeMismatch, kInvalidArgument (config), kOutOfMemory.  Thread:
+/// reentrant.
+[[nodiscard]] Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch,
+                                     ImageView<std::uint8_t> missing,
                                      ImageView<float> filled_mm) noexcept;
 
 }  // namespace flatpose::image

@@ -67,6 +67,10 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   const double height_tolerance_mm =
       bounded(3.5 * noise_mm + 0.15 * cell_mm, 0.05 * cell_mm, 0.5 * step_mm);
 
+  // The middle one of nine cells is surer than each of them.
+  const double surface_tolerance_mm =
+      bounded(2.0 * noise_mm + 0.4 * cell_mm, 0.05 * cell_mm, 0.5 * step_mm);
+
   // The angle's step lets the farthest point be off by half of what the chamfer images still see
   // (kEdgeCostMax).
   const double reach_mm = search::kEdgeCostMax / 3.0 * coarse_mm;
@@ -89,21 +93,23 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.tilt_radius_px = tilt_radius_px(part, noise_mm, coarse_mm);
 
   s.wide.edge_reach_mm = reach_mm;
-  s.wide.height_reach_mm = std::max(2.0 * height_tolerance_mm, 0.03 * part.radius_mm);
-  s.wide.covering_reach_mm = 1.5 * height_tolerance_mm;
+  s.wide.height_reach_mm = std::max(2.0 * surface_tolerance_mm, 0.03 * part.radius_mm);
+  s.wide.covering_reach_mm = 1.5 * surface_tolerance_mm;
   s.wide.normal_reach = 0.4;
   s.wide.edge_sigma_mm = cell_mm;
   s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
   s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
   s.narrow = s.wide;
   s.narrow.edge_reach_mm = 4.0 * cell_mm;
-  s.narrow.covering_reach_mm = height_tolerance_mm;
-  s.narrow.height_reach_mm = 1.3 * height_tolerance_mm;
+  s.narrow.covering_reach_mm = 1.1 * surface_tolerance_mm;
+  s.narrow.height_reach_mm = 1.5 * surface_tolerance_mm;
 
   s.polish.height_tolerance_mm = height_tolerance_mm;
   s.polish.search_mm = 2.5 * cell_mm;
 
+  s.verify.surface_tolerance_mm = surface_tolerance_mm;
   s.verify.height_tolerance_mm = height_tolerance_mm;
+  s.screen.surface_tolerance_mm = s.wide.height_reach_mm;
   s.screen.height_tolerance_mm = s.wide.height_reach_mm;
   s.screen.contradiction_weight = 1.0;
   s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "flatpose/image/dark_pit.hpp"
+
 namespace flatpose::locate {
 namespace {
 
@@ -37,6 +39,35 @@ Sight sight(const refine::FineImages& images, const Vec3& p_mm, double tolerance
   if (!found) return Sight::kNothing;
   if (nearest_mm > tolerance_mm) return Sight::kAbove;
   return nearest_mm < -tolerance_mm ? Sight::kBelow : Sight::kAt;
+}
+
+// What stands at a place on the surface: the middle one of the heights around it, which noise
+// leaves near the truth. In a dark pit between sides of the expected height it is lower.
+Sight sight_on_surface(const refine::FineImages& images, const Vec3& p_mm,
+                       double tolerance_mm) noexcept {
+  const Cell centre = cell_at(images.grid, p_mm.x, p_mm.y);
+  std::array<double, 9> above_mm{};
+  int count = 0;
+  for (int row = centre.row - 1; row <= centre.row + 1; ++row) {
+    for (int column = centre.column - 1; column <= centre.column + 1; ++column) {
+      if (!images.height_mm.contains(column, row)) continue;
+      const double value_mm = static_cast<double>(images.height_mm(column, row)) - p_mm.z;
+      if (!std::isnan(value_mm)) above_mm[count++] = value_mm;
+    }
+  }
+  if (count == 0) {
+    if (!images.height_mm.contains(centre.column, centre.row) ||
+        images.missing(centre.column, centre.row) != image::kDarkPit) {
+      return Sight::kNothing;
+    }
+    const double side_mm =
+        static_cast<double>(images.filled_mm(centre.column, centre.row)) + images.pit_drop_mm;
+    return std::fabs(side_mm - p_mm.z) <= tolerance_mm ? Sight::kBelow : Sight::kNothing;
+  }
+  const auto middle = above_mm.begin() + count / 2;
+  std::nth_element(above_mm.begin(), middle, above_mm.begin() + count);
+  if (*middle > tolerance_mm) return Sight::kAbove;
+  return *middle < -tolerance_mm ? Sight::kBelow : Sight::kAt;
 }
 
 bool is_claimed(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
@@ -153,7 +184,7 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     const double weight_of_area = p.weight;
     area += weight_of_area;
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
-    const Sight seen = sight(images, q_mm, config.height_tolerance_mm);
+    const Sight seen = sight_on_surface(images, q_mm, config.surface_tolerance_mm);
     if (seen == Sight::kNothing || seen == Sight::kAbove) continue;
     ++out.surface.visible_count;
     visible_area += weight_of_area;

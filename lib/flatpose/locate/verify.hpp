@@ -12,7 +12,8 @@
 namespace flatpose::locate {
 
 struct VerifyConfig {
-  double height_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
+  double surface_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
+  double height_tolerance_mm = 1.0;   ///< A single cell this near to its height may be there.
   double edge_tolerance_px =
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
   /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.

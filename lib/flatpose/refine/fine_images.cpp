@@ -18,6 +18,8 @@ FineImages take_fine_images(Arena& arena, const rectify::Grid& grid) noexcept {
 Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept {
   images.height_mm = scene.map.height_mm;
   images.filled_mm = scene.filled_mm;
+  images.missing = scene.missing;
+  images.pit_drop_mm = scene.pit_drop_mm;
   if (const Status s = image::edge_distances(scene.edges, {}, images.edge_distance_third_px);
       s != Status::kOk)
     return s;

@@ -67,6 +67,7 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   if (arena.failed()) return Status::kOutOfMemory;
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
+  scene.pit_drop_mm = static_cast<double>(pit_config(config).drop_mm);
   if (const Status s =
           rectify::rectify(scan, frames.work_T_scan, rectify_config(config), arena, scene.map);
       s != Status::kOk) {
@@ -76,7 +77,7 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
       image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing, arena);
   if (filled != Status::kOk) return filled;
   if (const Status s =
-          image::lower_dark_pits(scene.missing, pit_config(config), arena, scene.filled_mm);
+          image::lower_dark_pits(pit_config(config), arena, scene.missing, scene.filled_mm);
       s != Status::kOk) {
     return s;
   }

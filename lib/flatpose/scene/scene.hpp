@@ -29,11 +29,12 @@ struct SceneConfig {
 struct Scene {
   rectify::HeightMap map;
   ImageView<float> filled_mm;
-  ImageView<std::uint8_t> missing;
-  ImageView<std::uint8_t> edge_kind;        ///< image::EdgeKind
+  ImageView<std::uint8_t> missing;    ///< 0: seen, 1: filled, image::kDarkPit: filled and lowered.
+  ImageView<std::uint8_t> edge_kind;  ///< image::EdgeKind
   std::span<const image::EdgePoint> edges;  ///< Jumps and borders of missing data.
   double noise_mm = 0.0;
   double pitch_mm = 0.0;
+  double pit_drop_mm = 0.0;  ///< How far a dark pit was put below its sides.
 };
 
 /// The smallest step of height that counts as a contour.
