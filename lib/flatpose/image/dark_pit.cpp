@@ -1,8 +1,8 @@
 #include "flatpose/image/dark_pit.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace flatpose::image {
@@ -11,9 +11,16 @@ namespace {
 constexpr int kWidthMin_px = 3;
 constexpr int kWidthMax_px = 15;
 
+// What is known of a missing cell.
+constexpr std::uint8_t kLevelRow = 1;  // in a run of its row that is wide and level
+constexpr std::uint8_t kPit = 2;
+// A pit, were there nothing higher at one end of its diagonal.
+constexpr std::uint8_t kShadowFalling = 3;
+constexpr std::uint8_t kShadowRising = 4;
+
 struct DarkPitScratch {
-  ImageView<std::uint8_t> level_in_row;  // 1 in runs of a row that are wide and level
-  std::span<std::int32_t> run_px;        // missing cells above, by column
+  ImageView<std::uint8_t> marks;
+  std::span<std::int32_t> run_px;  // missing cells above, by column
 };
 
 DarkPitScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
@@ -61,7 +68,7 @@ bool is_firm(const std::uint8_t* first, std::ptrdiff_t step) noexcept {
   return true;
 }
 
-void mark_level_runs(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
+void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
                      int width_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
   for (int y = 0; y < missing.height_px; ++y) {
     const std::uint8_t* row = missing.row(y);
@@ -72,32 +79,82 @@ void mark_level_runs(ImageView<const std::uint8_t> missing, ImageView<const floa
       if (row[x] == 0 || row[x - 1] != 0) continue;
       int end = x + 1;
       while (end < missing.width_px && row[end] != 0) ++end;
-      const bool level = end + kFirm_px <= missing.width_px && is_firm(row + x - 1, -1) &&
-                         is_firm(row + end, 1) && std::fabs(z_mm[x - 1] - z_mm[end]) <= level_mm;
-      if (level && end - x >= width_min_px) std::fill(mark + x, mark + end, std::uint8_t{1});
+      const bool firm =
+          end + kFirm_px <= missing.width_px && is_firm(row + x - 1, -1) && is_firm(row + end, 1);
+      if (firm && end - x >= width_min_px) {
+        const float highest_mm = std::max(z_mm[x - 1], z_mm[end]);
+        for (int i = x; i < end; ++i) mark[i] = highest_mm - z_mm[i] <= level_mm ? kLevelRow : 0;
+      }
       x = end;
     }
   }
 }
 
-// A run of a column has ended above row `end`: what lies in it is lowered where rows and columns
+// A run of a column has ended above row `end`: what lies in it may be a pit where rows and columns
 // agree.
-void lower_run(ImageView<const std::uint8_t> marks, const DarkPitConfig& config, int x, int begin,
-               int end, ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+void mark_level_run(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
+                    float level_mm, int x, int begin, int end,
+                    ImageView<std::uint8_t> marks) noexcept {
   if (begin < kFirm_px || end + kFirm_px > missing.height_px) return;
   if (!is_firm(missing.row(begin - 1) + x, -missing.stride_px) ||
       !is_firm(missing.row(end) + x, missing.stride_px)) {
     return;
   }
-  const float above_mm = filled_mm(x, begin - 1);
-  const float below_mm = filled_mm(x, end);
-  if (std::fabs(above_mm - below_mm) > config.level_mm) return;
-  const float highest_mm = std::max(above_mm, below_mm);
+  const float highest_mm = std::max(filled_mm(x, begin - 1), filled_mm(x, end));
   for (int y = begin; y < end; ++y) {
-    float& z_mm = filled_mm(x, y);  // the lowest of the four sides
-    if (marks(x, y) == 0 || highest_mm - z_mm > config.level_mm) continue;
-    z_mm -= config.drop_mm;
-    missing(x, y) = kDarkPit;
+    if (marks(x, y) != 0 && highest_mm - filled_mm(x, y) <= level_mm) marks(x, y) = kPit;
+  }
+}
+
+void mark_level_columns(const DarkPitScratch& s, ImageView<const std::uint8_t> missing,
+                        ImageView<const float> filled_mm, int width_min_px,
+                        float level_mm) noexcept {
+  std::fill(s.run_px.begin(), s.run_px.end(), 0);
+  for (int y = 0; y < missing.height_px; ++y) {
+    const std::uint8_t* row = missing.row(y);
+    for (int x = 0; x < missing.width_px; ++x) {
+      std::int32_t& run_px = s.run_px[x];
+      if (row[x] != 0) {
+        ++run_px;
+        continue;
+      }
+      if (run_px >= width_min_px)
+        mark_level_run(missing, filled_mm, level_mm, x, y - run_px, y, s.marks);
+      run_px = 0;
+    }
+  }
+}
+
+// A shadow lies beside what casts it: where a diagonal (dx, 1) of missing cells ends at something
+// higher, they are in no pit but in `shadow`. It is judged once, from the first pit on it.
+void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
+                   float level_mm, int dx, std::uint8_t shadow,
+                   ImageView<std::uint8_t> marks) noexcept {
+  const auto is_missing = [&](int x, int y) {
+    return missing.contains(x, y) && missing(x, y) != 0;
+  };
+  const auto height_mm = [&](int x, int y) {
+    return missing.contains(x, y) ? filled_mm(x, y) : -std::numeric_limits<float>::infinity();
+  };
+  for (int y = 0; y < missing.height_px; ++y) {
+    for (int x = 0; x < missing.width_px; ++x) {
+      if (marks(x, y) != kPit) continue;
+      const auto mark = [&](int i) -> std::uint8_t& { return marks(x + i * dx, y + i); };
+      int before = -1;
+      while (is_missing(x + before * dx, y + before) && mark(before) != kPit &&
+             mark(before) != shadow) {
+        --before;
+      }
+      if (is_missing(x + before * dx, y + before)) continue;
+      int end = 1;
+      while (is_missing(x + end * dx, y + end)) ++end;
+      const float highest_mm =
+          std::max(height_mm(x + before * dx, y + before), height_mm(x + end * dx, y + end));
+      for (int i = 0; i < end; ++i) {
+        if (mark(i) == kPit && highest_mm - filled_mm(x + i * dx, y + i) > level_mm)
+          mark(i) = shadow;
+      }
+    }
   }
 }
 
@@ -118,19 +175,15 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
   if (scratch.failed()) return Status::kOutOfMemory;
 
   const int width_min_px = accidental_width_px(missing);
-  mark_level_runs(missing, filled_mm, width_min_px, config.level_mm, s.level_in_row);
-  std::fill(s.run_px.begin(), s.run_px.end(), 0);
+  mark_level_rows(missing, filled_mm, width_min_px, config.level_mm, s.marks);
+  mark_level_columns(s, missing, filled_mm, width_min_px, config.level_mm);
+  clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
+  clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
   for (int y = 0; y < missing.height_px; ++y) {
-    const std::uint8_t* row = missing.row(y);
     for (int x = 0; x < missing.width_px; ++x) {
-      std::int32_t& run_px = s.run_px[x];
-      if (row[x] != 0) {
-        ++run_px;
-        continue;
-      }
-      if (run_px >= width_min_px)
-        lower_run(s.level_in_row, config, x, y - run_px, y, missing, filled_mm);
-      run_px = 0;
+      if (s.marks(x, y) != kPit) continue;
+      filled_mm(x, y) -= config.drop_mm;
+      missing(x, y) = kDarkPit;
     }
   }
   return Status::kOk;

@@ -73,6 +73,8 @@ class Pipeline {
 
     const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
+    holes_ = model::find_holes(part_);
+    settings_.verify.holes = &holes_;
     settings_.search.vector_path = limits_.vector_path;
     settings_.scene.vector_path = limits_.vector_path;
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
@@ -331,6 +333,7 @@ class Pipeline {
   Arena& arena_;
   LocateResult& result_;
   Settings settings_;
+  model::Holes holes_;
   scene::Scene scene_;
   Workspace work_;
   Acceptance acceptance_;

@@ -21,6 +21,30 @@ Cell cell_at(const rectify::Grid& grid, double x_mm, double y_mm) noexcept {
           static_cast<int>(std::floor(grid.row_of(y_mm) + 0.5))};
 }
 
+// Where nothing was seen. What casts a shadow is higher than what lies in it, so where nothing
+// beside the dark is higher than the part, and something is lower or all is level around a gap too
+// wide to be lost points, there is a hole.
+Sight sight_in_the_dark(const refine::FineImages& images, const Cell& cell, const Vec3& p_mm,
+                        double tolerance_mm) noexcept {
+  constexpr int kReach_px = 40;
+  if (!images.missing.contains(cell.column, cell.row)) return Sight::kNothing;
+  bool is_open = images.missing(cell.column, cell.row) == image::kDarkPit;
+  constexpr std::array<Cell, 4> kSides = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  for (const Cell& side : kSides) {
+    Cell at = cell;
+    int steps = 0;
+    while (images.missing.contains(at.column, at.row) && images.missing(at.column, at.row) != 0 &&
+           ++steps < kReach_px) {
+      at = {at.column + side.column, at.row + side.row};
+    }
+    if (!images.missing.contains(at.column, at.row) || steps == kReach_px) return Sight::kNothing;
+    const double above_mm = static_cast<double>(images.height_mm(at.column, at.row)) - p_mm.z;
+    if (above_mm > tolerance_mm) return Sight::kNothing;
+    is_open |= above_mm < -tolerance_mm;
+  }
+  return is_open ? Sight::kBelow : Sight::kNothing;
+}
+
 // What stands at a place, judged by the cell of the 3x3 around it that comes nearest to the
 // expected height: a lost point or a cell's width at a contour decides nothing.
 Sight sight(const refine::FineImages& images, const Vec3& p_mm, double tolerance_mm) noexcept {
@@ -36,13 +60,13 @@ Sight sight(const refine::FineImages& images, const Vec3& p_mm, double tolerance
       found = true;
     }
   }
-  if (!found) return Sight::kNothing;
+  if (!found) return sight_in_the_dark(images, centre, p_mm, tolerance_mm);
   if (nearest_mm > tolerance_mm) return Sight::kAbove;
   return nearest_mm < -tolerance_mm ? Sight::kBelow : Sight::kAt;
 }
 
 // What stands at a place on the surface: the middle one of the heights around it, which noise
-// leaves near the truth. In a dark pit between sides of the expected height it is lower.
+// leaves near the truth.
 Sight sight_on_surface(const refine::FineImages& images, const Vec3& p_mm,
                        double tolerance_mm) noexcept {
   const Cell centre = cell_at(images.grid, p_mm.x, p_mm.y);
@@ -55,15 +79,7 @@ Sight sight_on_surface(const refine::FineImages& images, const Vec3& p_mm,
       if (!std::isnan(value_mm)) above_mm[count++] = value_mm;
     }
   }
-  if (count == 0) {
-    if (!images.height_mm.contains(centre.column, centre.row) ||
-        images.missing(centre.column, centre.row) != image::kDarkPit) {
-      return Sight::kNothing;
-    }
-    const double side_mm =
-        static_cast<double>(images.filled_mm(centre.column, centre.row)) + images.pit_drop_mm;
-    return std::fabs(side_mm - p_mm.z) <= tolerance_mm ? Sight::kBelow : Sight::kNothing;
-  }
+  if (count == 0) return sight_in_the_dark(images, centre, p_mm, tolerance_mm);
   const auto middle = above_mm.begin() + count / 2;
   std::nth_element(above_mm.begin(), middle, above_mm.begin() + count);
   if (*middle > tolerance_mm) return Sight::kAbove;
@@ -171,6 +187,36 @@ double typical_spread_mm(const model::Template& part) noexcept {
   return static_cast<double>(*middle);
 }
 
+// Holes that can be seen and are not there. One such is enough: the worst decides.
+class HoleTally {
+ public:
+  explicit HoleTally(const model::Holes* holes) noexcept : holes_(holes) {}
+
+  void add(int point, double agreement) noexcept {
+    if (holes_ == nullptr || holes_->hole_of_point[point] >= holes_->count) return;
+    const std::uint8_t hole = holes_->hole_of_point[point];
+    ++seen_count_[hole];
+    agreement_sum_[hole] += agreement;
+  }
+
+  /// 1 when every hole seen is there, less when one is hardly there.
+  [[nodiscard]] double agreement() const noexcept {
+    constexpr double kSeenShare = 0.5;
+    constexpr double kEnough = 0.65;
+    double worst = 1.0;
+    for (int i = 0; holes_ != nullptr && i < holes_->count; ++i) {
+      if (seen_count_[i] < kSeenShare * holes_->point_count[i]) continue;
+      worst = std::min(worst, agreement_sum_[i] / seen_count_[i] / kEnough);
+    }
+    return worst;
+  }
+
+ private:
+  const model::Holes* holes_;
+  std::array<int, model::kHoleCountMax> seen_count_{};
+  std::array<double, model::kHoleCountMax> agreement_sum_{};
+};
+
 }  // namespace
 
 Verification verify(const model::Template& part, const refine::FineImages& images,
@@ -198,7 +244,9 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   const double typical_mm = typical_spread_mm(part);
   double visible_weight = 0.0;
   double confirmed_weight = 0.0;
-  for (const model::ContourPoint& p : part.contour_points()) {
+  HoleTally holes(config.holes);
+  for (int i = 0; i < part.contour_count; ++i) {
+    const model::ContourPoint& p = part.contour[i];
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
     // A side wall that leans toward the sensor draws the fall out over its own width, and where the
@@ -215,10 +263,11 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     visible_weight += weight(p);
     if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
     confirmed_weight += verdict.agreement * weight(p);
+    holes.add(i, verdict.agreement);
   }
   out.visible = share(visible_area, area);
   out.score = surface_agreement(share(confirmed_area, visible_area), config.contradiction_weight) *
-              share(confirmed_weight, visible_weight);
+              share(confirmed_weight, visible_weight) * holes.agreement();
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "flatpose/core/image_view.hpp"
+#include "flatpose/model/holes.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/refine/fine_images.hpp"
 
@@ -16,6 +17,8 @@ struct VerifyConfig {
   double height_tolerance_mm = 1.0;   ///< A single cell this near to its height may be there.
   double edge_tolerance_px =
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
+  /// The part's holes, each of which must show itself where it can be seen; null: not asked for.
+  const model::Holes* holes = nullptr;
   /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.
   double contradiction_weight = 3.0;
 };

@@ -19,7 +19,6 @@ Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept
   images.height_mm = scene.map.height_mm;
   images.filled_mm = scene.filled_mm;
   images.missing = scene.missing;
-  images.pit_drop_mm = scene.pit_drop_mm;
   if (const Status s = image::edge_distances(scene.edges, {}, images.edge_distance_third_px);
       s != Status::kOk)
     return s;

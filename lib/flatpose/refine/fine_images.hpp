@@ -20,7 +20,6 @@ struct FineImages {
   ImageView<const float> height_mm;  ///< NaN where missing.
   ImageView<const float> filled_mm;
   ImageView<const std::uint8_t> missing;  ///< As in the scene.
-  double pit_drop_mm = 0.0;
   image::OctantImage edge_distance_third_px;  ///< Chamfer distance per falling direction.
   ImageView<float> normal_x;
   ImageView<float> normal_y;

@@ -67,7 +67,6 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   if (arena.failed()) return Status::kOutOfMemory;
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
-  scene.pit_drop_mm = static_cast<double>(pit_config(config).drop_mm);
   if (const Status s =
           rectify::rectify(scan, frames.work_T_scan, rectify_config(config), arena, scene.map);
       s != Status::kOk) {

@@ -34,7 +34,6 @@ struct Scene {
   std::span<const image::EdgePoint> edges;  ///< Jumps and borders of missing data.
   double noise_mm = 0.0;
   double pitch_mm = 0.0;
-  double pit_drop_mm = 0.0;  ///< How far a dark pit was put below its sides.
 };
 
 /// The smallest step of height that counts as a contour.

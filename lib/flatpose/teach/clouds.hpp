@@ -28,7 +28,8 @@ void reserve_cloud_scratch(Arena& arena, const rectify::Grid& grid) noexcept;
                                     double noise_mm, Arena& arena, SurfaceSamples& out) noexcept;
 
 /// Fills part.surface in farthest-point order.  `work_T_object` places the object frame.
-[[nodiscard]] Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_object,
+[[nodiscard]] Status build_surface_cloud(const SurfaceSamples& samples, const PartMask& mask,
+                                         const rectify::Grid& grid, const Pose& work_T_object,
                                          double margin_mm, Arena& scratch,
                                          model::Template& part) noexcept;
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -83,29 +84,41 @@ Status sample_surface(const scene::Scene& scene, const PartMask& mask, double no
   return out.count >= kSampleCountMin ? Status::kOk : Status::kTooFewPoints;
 }
 
-// Each sample of the part's area, the margin too, goes to the point nearest to it.
-void weigh_by_area(const SurfaceSamples& samples, std::span<const int> candidates,
-                   std::span<const int> order, model::Template& part) noexcept {
-  const float share = static_cast<float>(part.surface_count) / static_cast<float>(samples.count);
-  for (int k = 0; k < part.surface_count; ++k) part.surface[k].weight = 0.0F;
-  for (int i = 0; i < samples.count; ++i) {
-    int nearest = 0;
-    double nearest2 = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < part.surface_count; ++k) {
-      const SurfaceSample& p = samples.samples[candidates[order[k]]];
-      const double dx = p.x_mm - samples.samples[i].x_mm;
-      const double dy = p.y_mm - samples.samples[i].y_mm;
-      const double d2 = dx * dx + dy * dy;
-      if (d2 >= nearest2) continue;
-      nearest2 = d2;
-      nearest = k;
+// Every cell of the part, its margin too, goes to the point nearest to it.
+void weigh_by_area(const SurfaceSamples& samples, const PartMask& mask, const rectify::Grid& grid,
+                   std::span<const int> candidates, std::span<const int> order,
+                   model::Template& part) noexcept {
+  const double per_cell = std::sqrt(static_cast<double>(mask.cell_count) / kSampleCountMax);
+  const int stride_px = std::max(1, static_cast<int>(std::ceil(per_cell)));
+  std::array<int, model::kSurfacePointCountMax> cell_count{};
+  int sum = 0;
+  for (int y = 0; y < grid.height_px; y += stride_px) {
+    for (int x = 0; x < grid.width_px; x += stride_px) {
+      if (mask.is_part(x, y) == 0) continue;
+      int nearest = 0;
+      double nearest2 = std::numeric_limits<double>::infinity();
+      for (int k = 0; k < part.surface_count; ++k) {
+        const SurfaceSample& p = samples.samples[candidates[order[k]]];
+        const double dx = p.x_mm - grid.x_of(x);
+        const double dy = p.y_mm - grid.y_of(y);
+        const double d2 = dx * dx + dy * dy;
+        if (d2 >= nearest2) continue;
+        nearest2 = d2;
+        nearest = k;
+      }
+      ++cell_count[nearest];
+      ++sum;
     }
-    part.surface[nearest].weight += share;
+  }
+  for (int k = 0; k < part.surface_count && sum > 0; ++k) {
+    part.surface[k].weight =
+        static_cast<float>(static_cast<double>(cell_count[k]) * part.surface_count / sum);
   }
 }
 
-Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_object,
-                           double margin_mm, Arena& scratch, model::Template& part) noexcept {
+Status build_surface_cloud(const SurfaceSamples& samples, const PartMask& mask,
+                           const rectify::Grid& grid, const Pose& work_T_object, double margin_mm,
+                           Arena& scratch, model::Template& part) noexcept {
   const ArenaScope scope(scratch);
   const std::span<int> candidates = scratch.take<int>(kSampleCountMax);
   const std::span<double> nearest = scratch.take<double>(kSampleCountMax);
@@ -140,7 +153,7 @@ Status build_surface_cloud(const SurfaceSamples& samples, const Pose& work_T_obj
     part.surface[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
                        static_cast<float>(n.x), static_cast<float>(n.y)};
   }
-  weigh_by_area(samples, candidates, order, part);
+  weigh_by_area(samples, mask, grid, candidates, order, part);
   return Status::kOk;
 }
 

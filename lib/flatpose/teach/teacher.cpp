@@ -72,7 +72,9 @@ class Lesson {
     if (s = build_contour_cloud(scene, mask, work_T_object_, arena, part_); s != Status::kOk)
       return s;
     const double margin_mm = std::max(1.5 * part_.cell_mm, 3.0 * scene.map.grid.cell_mm);
-    if (s = build_surface_cloud(samples, work_T_object_, margin_mm, arena, part_); s != Status::kOk)
+    if (s = build_surface_cloud(samples, mask, scene.map.grid, work_T_object_, margin_mm, arena,
+                                part_);
+        s != Status::kOk)
       return s;
     if (s = place_anchors(samples, work_T_object_, 3.0 * tolerance_mm, part_); s != Status::kOk)
       return s;
