@@ -119,10 +119,15 @@ struct Verdict {
 Verdict judge_contour(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
                       const Vec3& p_mm, const Vec3& falling, const Vec3& probe_mm,
                       const VerifyConfig& config) noexcept {
+  // What hides the contour covers most of the cells beside it; what confirms it may be one of them.
+  const auto is_hidden = [&](const Vec3& beside_mm) {
+    return sight_on_surface(images, beside_mm, config.surface_tolerance_mm) == Sight::kAbove ||
+           sight(images, beside_mm, config.height_tolerance_mm) == Sight::kAbove;
+  };
+  if (is_hidden(p_mm - probe_mm) || is_hidden(p_mm + probe_mm)) return {};
   const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
-  if (inside == Sight::kNothing || inside == Sight::kAbove) return {};
   const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
-  if (outside == Sight::kAbove) return {};
+  if (inside == Sight::kNothing) return {};
   const double agreement = edge_agreement(images, p_mm, falling, config.edge_tolerance_px);
   // Another part adjoins here, and where two touch at one height there is no edge.
   if (agreement < 1.0 && is_claimed(images, claimed, p_mm + probe_mm)) return {};
