@@ -82,10 +82,6 @@ void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const floa
       const bool firm =
           end + kFirm_px <= missing.width_px && is_firm(row + x - 1, -1) && is_firm(row + end, 1);
       if (firm && end - x >= width_min_px) {
-        // A shadow's last row may end level where the caster ends; the rest of it does not.
-        int level_count = 0;
-        for (int y = begin; y < end; ++y) level_count += marks(x, y);
-        if (2 * level_count < end - begin) return;
         const float highest_mm = std::max(z_mm[x - 1], z_mm[end]);
         for (int i = x; i < end; ++i) mark[i] = highest_mm - z_mm[i] <= level_mm ? kLevelRow : 0;
       }
