@@ -160,8 +160,10 @@ class Pipeline {
     lm.cost_tolerance = 1e-5;
     for (int i = 0; i < candidate_count_ && instance_count_ < kInstanceCountMax && !is_late();
          ++i) {
-      // A candidate that does not hold even loosely is not worth its refinement.
+      // What lies on a part beyond doubt is that part; one that does not hold even loosely is not
+      // worth its refinement.
       const Pose& start = work_.candidates[i].work_T_object;
+      if (is_explained(work_.candidates[i])) continue;
       if (verify(part_, work_.fine, {}, start, settings_.screen).score <
           kHopelessShare * settings_.score_threshold) {
         continue;
@@ -193,22 +195,52 @@ class Pipeline {
     result_.timings.verify_us += lap();
   }
 
+  [[nodiscard]] bool is_beyond_doubt(const Instance& instance) const noexcept {
+    constexpr double kShare = 0.95;
+    return instance.is_polished && instance.verification.score >= kShare * part_.self_score &&
+           acceptance_.may_match(instance.polished, instance.verification);
+  }
+
   // Whether as many as are asked for are beyond doubt, each in a place of its own: other anchors
   // are not searched then.
   [[nodiscard]] bool has_enough() const noexcept {
-    constexpr double kBeyondDoubtShare = 0.95;
-    const double enough = kBeyondDoubtShare * part_.self_score;
     int count = 0;
     for (int i = 0; i < instance_count_; ++i) {
-      const Instance& instance = work_.instances[i];
-      const bool sure = instance.is_polished && instance.verification.score >= enough &&
-                        acceptance_.may_match(instance.polished, instance.verification);
-      if (!sure) continue;
+      if (!is_beyond_doubt(work_.instances[i])) continue;
       bool is_new = true;
-      for (int j = 0; j < i && is_new; ++j) is_new = !is_same_place(work_.instances[j], instance);
+      for (int j = 0; j < i && is_new; ++j)
+        is_new = !is_same_place(work_.instances[j], work_.instances[i]);
       count += is_new ? 1 : 0;
     }
     return count >= config_.max_matches;
+  }
+
+  // Whether the candidate's anchor stands on the surface of a part that an earlier anchor has found
+  // beyond doubt. (Poses from one anchor compete: a turned part stands in its own place.)
+  [[nodiscard]] bool is_explained(const search::Candidate& candidate) const noexcept {
+    if (candidate.anchor == 0) return false;
+    const model::Anchor& anchor = part_.anchors[candidate.anchor];
+    const Vec3 p_work_mm = candidate.work_T_object * Vec3{anchor.x_mm, anchor.y_mm, 0.0};
+    for (int i = 0; i < instance_count_; ++i) {
+      const Instance& instance = work_.instances[i];
+      if (is_beyond_doubt(instance) &&
+          is_on_surface(instance.polished.work_T_object.inverse() * p_work_mm)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_on_surface(const Vec3& p_object_mm) const noexcept {
+    const double spacing_mm = std::sqrt(part_.area_mm2 / std::max(1, part_.surface_count));
+    for (const model::SurfacePoint& p : part_.surface_points()) {
+      const Vec3 apart = p_object_mm - Vec3{p.x_mm, p.y_mm, p.z_mm};
+      if (std::fabs(apart.x) <= spacing_mm && std::fabs(apart.y) <= spacing_mm &&
+          std::fabs(apart.z) <= settings_.verify.surface_tolerance_mm) {
+        return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] bool is_known(const Pose& pose) const noexcept {
