@@ -1,5 +1,7 @@
 #include "flatpose/locate/workspace.hpp"
 
+#include <algorithm>
+
 #include "flatpose/image/canny.hpp"
 #include "flatpose/image/dark_pit.hpp"
 #include "flatpose/image/fill.hpp"
@@ -21,11 +23,9 @@ Workspace take_workspace(Arena& arena, const rectify::Grid& grid) noexcept {
   return work;
 }
 
-std::size_t workspace_required_bytes(const Limits& limits) noexcept {
-  // The longest rows need the most scratch; a map of fewer, shorter rows needs less.
-  rectify::Grid grid;
-  grid.width_px = kMapSideMax_px;
-  grid.height_px = limits.cell_count / kMapSideMax_px + 1;
+namespace {
+
+std::size_t required_bytes_on(const rectify::Grid& grid, const Limits& limits) noexcept {
   Arena arena = Arena::measuring();
   const auto with_scratch = [&arena](auto&& reserve) {
     const ArenaScope scope(arena);
@@ -46,6 +46,30 @@ std::size_t workspace_required_bytes(const Limits& limits) noexcept {
   (void)take_workspace(arena, grid);
   with_scratch([&] { search::reserve_search_scratch(arena, grid); });
   return arena.required_bytes();
+}
+
+}  // namespace
+
+std::size_t workspace_required_bytes(const Limits& limits) noexcept {
+  // Wide maps have long rows, narrow ones waste most of their blocks of places: between two widths
+  // at which a row takes one block more, the memory is largest at one of the two.
+  constexpr int kCellsPerBlock = 2 * search::kBlockSize;
+  const int narrowest_px = std::clamp(limits.cell_count / kMapSideMax_px, 1, kMapSideMax_px);
+  std::size_t most_bytes = 0;
+  const auto include = [&](int width_px) {
+    if (width_px < narrowest_px || width_px > kMapSideMax_px) return;
+    rectify::Grid grid;
+    grid.width_px = width_px;
+    grid.height_px = std::min(limits.cell_count / width_px + 1, kMapSideMax_px);
+    most_bytes = std::max(most_bytes, required_bytes_on(grid, limits));
+  };
+  include(narrowest_px);
+  include(narrowest_px + 1);
+  for (int width_px = kCellsPerBlock; width_px <= kMapSideMax_px; width_px += kCellsPerBlock) {
+    include(width_px);
+    include(width_px + 1);
+  }
+  return most_bytes;
 }
 
 }  // namespace flatpose::locate

@@ -94,8 +94,8 @@ TEST(Memory, SufficesForEveryShapeWithinTheLimits) {
   const model::Template part = test::block_part();
   const struct {
     int width_px, height_px;
-  } shapes[] = {{2, 2},     {3, 300},   {300, 3},   {1, 200},   {200, 1},
-                {4000, 12}, {12, 4000}, {257, 193}, {193, 257}, {65, 700}};
+  } shapes[] = {{2, 2},     {3, 300},   {300, 3},   {1, 200},  {200, 1},  {4000, 12},
+                {12, 4000}, {257, 193}, {193, 257}, {65, 700}, {129, 400}};
   for (const auto& shape : shapes) {
     const MadeScan scan = striped(shape.width_px, shape.height_px);
     for (const double cell_mm : {1.0, 0.75}) {
