@@ -12,6 +12,7 @@ namespace {
 // Bounds of a part's own threshold: a place where a sixth of what the part itself shows is not seen
 // is no part, whatever the teach scan held; and a part with a tenth of it spoilt still is one.
 constexpr double kThresholdShareMin = 0.83;
+constexpr double kThresholdMin = 0.5;  // a part not found in its own scan lets nothing through
 constexpr double kThresholdMax = 0.88;
 // Scores of like instances differ by less than this; what resembles the part only is farther off.
 constexpr double kScoreGap = 0.13;
@@ -94,7 +95,8 @@ void set_threshold(const locate::LocateResult& everything, const Pose& face_T_ob
     }
     lowest_like = std::min(lowest_like, scores[i]);
   }
-  const double threshold_min = std::min(kThresholdShareMin * part.self_score, kThresholdMax);
+  const double threshold_min =
+      std::clamp(kThresholdShareMin * part.self_score, kThresholdMin, kThresholdMax);
   part.score_threshold =
       std::clamp(0.5 * (lowest_like + part.rival_score), threshold_min, kThresholdMax);
   constexpr double kMarginThin = 0.2;

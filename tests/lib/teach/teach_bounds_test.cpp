@@ -298,14 +298,31 @@ TEST(Threshold, AWideMarginIsNotThin) {
   EXPECT_EQ(part.weakness & model::kWeakMarginThin, 0U);
 }
 
+// Scores of its like, of what resembles it only, and of nothing else in the scan.
+TEST(Threshold, LetsThroughWhatIsOfTheLikeAndNothingFartherOff) {
+  const Pose self = test::pose_at(10, 20, 30);
+  model::Template part = sound_part();
+  set_threshold(scores(self, {0.90, 0.78}, 1.0), self, part);  // steps of 0.10 and 0.12 are alike
+  EXPECT_EQ(part.rival_score, 0.0);
+  EXPECT_EQ(part.weakness & model::kWeakMarginThin, 0U);
+  set_threshold(scores(self, {0.90, 0.76}, 1.0), self, part);  // one of 0.14 is not
+  EXPECT_EQ(part.rival_score, 0.76);
+  EXPECT_GT(part.score_threshold, 0.76);
+  EXPECT_LT(part.score_threshold, 0.90);
+  EXPECT_NE(part.weakness & model::kWeakMarginThin, 0U);
+}
+
 TEST(Threshold, StaysWithinBoundsWhateverWasFound) {
   const Pose self = test::pose_at(10, 20, 30);
-  for (const double own : {0.0, 0.4, 0.7, 1.0}) {
-    for (const double other : {0.0, 0.4, 0.7, 1.0}) {
-      model::Template part = sound_part();
-      set_threshold(scores(self, {other}, own), self, part);
-      EXPECT_GE(part.score_threshold, 0.5);
-      EXPECT_LE(part.score_threshold, 0.95);
+  for (const double own : {0.0, 0.4, 0.7, 0.9, 1.0}) {
+    for (const double other : {0.0, 0.4, 0.7, 0.9, 1.0}) {
+      for (const double rival : {0.0, 0.6, 1.0}) {
+        model::Template part = sound_part();
+        set_threshold(scores(self, {other}, own, rival), self, part);
+        EXPECT_GE(part.score_threshold, 0.5);
+        EXPECT_GE(part.score_threshold, 0.83 * own);
+        EXPECT_LE(part.score_threshold, 0.88);
+      }
     }
   }
 }
