@@ -74,23 +74,26 @@ const model::ContourPoint* nearest(
 }
 
 // A turn by 360/N lays the contour onto itself but for a shift t = (1 - R)(c_true - c): solved for
-// c, again and again.
-Vec3 center_of_turn(const model::Template& part, int order, Vec3 c) noexcept {
+// c, again and again, from counterparts within a reach that begins at `reach_cells`.
+Vec3 center_of_turn(const model::Template& part, int order, Vec3 c,
+                    double reach_cells = 32.0) noexcept {
   constexpr int kRoundCount = 16;
-  constexpr double kReachStart = 32.0;  // cells
   constexpr double kReachMin = 3.0;
   const SinCos turn = sin_cos(2.0 * kPi / order);
   for (int round = 0; round < kRoundCount; ++round) {
     // What has no counterpart (a hole seen in part) must not take another's: the reach shrinks as
     // the centre settles.
-    const double reach_mm = std::max(kReachMin, kReachStart / (1 << round)) * part.cell_mm;
+    const double reach_mm = std::max(kReachMin, reach_cells / (1 << round)) * part.cell_mm;
     double a00 = 0, a01 = 0, a11 = 0, b0 = 0, b1 = 0;
     for (const model::ContourPoint& p : part.contour_points()) {
       const Turned q = turned(p, c, turn);
       const model::ContourPoint* match = nearest(part, q, reach_mm);
       if (match == nullptr) continue;
-      const double nx = match->nx;
-      const double ny = match->ny;
+      // Across the mean of both directions: two points of one arc then lie in no gap, however far
+      // they are apart along it.
+      const Vec3 across = normalized({match->nx + q.nx, match->ny + q.ny, 0.0});
+      const double nx = across.x;
+      const double ny = across.y;
       const double gap = nx * (match->x_mm - q.x) + ny * (match->y_mm - q.y);
       const double cells = gap / part.cell_mm;
       const double weight = 1.0 / (1.0 + cells * cells);  // a contour gone astray pulls little
@@ -110,12 +113,14 @@ Vec3 center_of_turn(const model::Template& part, int order, Vec3 c) noexcept {
   return c;
 }
 
-// Any turn lays it onto itself: the mean over some that share no points.
+// Any turn lays it onto itself: the mean over some that share no points. The normals meet near the
+// centre already, and what is seen of an arc alone has no counterpart farther off.
 Vec3 center_of_every_turn(const model::Template& part) noexcept {
   constexpr std::array<int, 4> kOrders = {2, 3, 5, 7};
+  constexpr double kReach = 4.0;  // cells
   const Vec3 start = meeting_of_normals(part);
   Vec3 sum;
-  for (const int order : kOrders) sum = sum + center_of_turn(part, order, start);
+  for (const int order : kOrders) sum = sum + center_of_turn(part, order, start, kReach);
   return (1.0 / kOrders.size()) * sum;
 }
 
