@@ -17,26 +17,34 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kRooms{"core",  "geometry", "autodiff", "rectify", "image", "scene",
                                       "model", "search",   "refine",   "locate",  "teach"};
 
+// The same for port/linux: what asks the system for one thing, then what needs all of it.
+const std::vector<std::string> kLinuxRooms{"clock", "cpu", "files", "tool"};
+
 struct Include {
   fs::path file;     // relative to the tree
   std::string what;  // as written, without brackets or quotes
 };
 
-std::vector<Include> includes_under(const std::string& folder) {
-  const std::regex line_form(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+/// Calls with the file, relative to the tree, and each of its lines.
+template <class Visit>
+void over_lines(const std::string& folder, const Visit& visit) {
+  const std::vector<std::string> extensions{".hpp", ".cpp", ".h", ".inc"};
   const fs::path root = FLATPOSE_SOURCE_DIR;
-  std::vector<Include> found;
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const std::string extension = entry.path().extension();
-    if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;
     std::ifstream file(entry.path());
-    for (std::string line; std::getline(file, line);) {
-      std::smatch match;
-      if (std::regex_search(line, match, line_form)) {
-        found.push_back({fs::relative(entry.path(), root), match[1]});
-      }
-    }
+    for (std::string line; std::getline(file, line);) visit(fs::relative(entry.path(), root), line);
   }
+}
+
+std::vector<Include> includes_under(const std::string& folder) {
+  const std::regex line_form(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::vector<Include> found;
+  over_lines(folder, [&](const fs::path& file, const std::string& line) {
+    std::smatch match;
+    if (std::regex_search(line, match, line_form)) found.push_back({file, match[1]});
+  });
   return found;
 }
 
@@ -44,9 +52,11 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
-std::ptrdiff_t rank_of(const std::string& room) {
-  return std::find(kRooms.begin(), kRooms.end(), room) - kRooms.begin();
+std::ptrdiff_t rank_of(const std::string& room, const std::vector<std::string>& rooms = kRooms) {
+  return std::find(rooms.begin(), rooms.end(), room) - rooms.begin();
 }
+
+std::string step_of(const fs::path& path, int index) { return *std::next(path.begin(), index); }
 
 TEST(Layering, RoomsOfLibIncludeOnlyWhatStandsBelow) {
   const auto top = static_cast<std::ptrdiff_t>(kRooms.size());
@@ -54,8 +64,8 @@ TEST(Layering, RoomsOfLibIncludeOnlyWhatStandsBelow) {
   ASSERT_GT(includes.size(), 100U);
   for (const Include& include : includes) {
     if (!starts_with(include.what, "flatpose/")) continue;
-    const std::string from = *std::next(include.file.begin(), 2);
-    const std::string to = *std::next(fs::path(include.what).begin(), 1);
+    const std::string from = step_of(include.file, 2);
+    const std::string to = step_of(include.what, 1);
     EXPECT_LT(rank_of(from), top) << include.file << " is in a room that the drawing lacks";
     EXPECT_LE(rank_of(to), rank_of(from)) << include.file << " includes " << include.what;
   }
@@ -78,20 +88,51 @@ TEST(Layering, LibKnowsNoSystemNoHeapAndNoOtherLibraryButEigenInRefine) {
   }
 }
 
+TEST(Layering, RoomsOfPortLinuxIncludeOnlyWhatStandsBelow) {
+  const auto top = static_cast<std::ptrdiff_t>(kLinuxRooms.size());
+  const auto includes = includes_under("port/linux");
+  ASSERT_GT(includes.size(), 100U);
+  for (const Include& include : includes) {
+    const std::string from = step_of(include.file, 2);
+    EXPECT_LT(rank_of(from, kLinuxRooms), top) << include.file << " is in a room of no rank";
+    if (!starts_with(include.what, "port/linux/")) continue;
+    EXPECT_LE(rank_of(step_of(include.what, 2), kLinuxRooms), rank_of(from, kLinuxRooms))
+        << include.file << " includes " << include.what;
+  }
+}
+
+TEST(Layering, TheProductKnowsNeitherItsBenchesNorItsTests) {
+  for (const std::string folder : {"lib/flatpose", "port"}) {
+    for (const Include& include : includes_under(folder)) {
+      EXPECT_FALSE(starts_with(include.what, "bench/") || starts_with(include.what, "tests/"))
+          << include.file << " includes " << include.what;
+    }
+  }
+  for (const Include& include : includes_under("bench")) {
+    EXPECT_FALSE(starts_with(include.what, "tests/"))
+        << include.file << " includes " << include.what;
+  }
+}
+
 TEST(Layering, OnlyPortLinuxKnowsTheSystem) {
   const std::regex system_form(
-      R"(^(sys/.*|linux/.*|unistd\.h|fcntl\.h|pthread\.h|sched\.h|modbus.*|net/.*|time\.h)$)");
+      R"(^(sys/.*|linux/.*|unistd\.h|fcntl\.h|pthread\.h|sched\.h|modbus.*|net/.*|time\.h|cpuid\.h)$)");
   for (const std::string folder : {"lib/flatpose", "port/sim"}) {
     for (const Include& include : includes_under(folder)) {
       EXPECT_FALSE(std::regex_match(include.what, system_form))
           << include.file << " includes " << include.what;
-      EXPECT_FALSE(starts_with(include.what, "port/linux/"))
+      const std::string forbidden = folder == "lib/flatpose" ? "port/" : "port/linux/";
+      EXPECT_FALSE(starts_with(include.what, forbidden))
           << include.file << " includes " << include.what;
-      if (folder == "lib/flatpose") {
-        EXPECT_FALSE(starts_with(include.what, "port/"))
-            << include.file << " includes " << include.what;
-      }
     }
+  }
+}
+
+TEST(Layering, OnlyPortLinuxAsksTheProcessor) {
+  for (const std::string folder : {"lib/flatpose", "port/sim"}) {
+    over_lines(folder, [&](const fs::path& file, const std::string& line) {
+      EXPECT_EQ(line.find("__builtin_cpu"), std::string::npos) << file << ": " << line;
+    });
   }
 }
 

@@ -52,7 +52,8 @@ inline std::unique_ptr<Template> made_template(int contour_count = 5, int surfac
   }
   for (int i = 0; i < surface_count; ++i) {
     const auto k = static_cast<float>(i);
-    part->surface[i] = {k - 3.0F, 0.5F * k, -0.25F * k, 0.001F * k, -0.0005F * k};
+    part->surface[i] = {k - 3.0F,   0.5F * k,     -0.25F * k,
+                        0.001F * k, -0.0005F * k, 0.75F + 0.25F * k};
   }
   for (int i = 0; i < anchor_count; ++i) {
     const auto k = static_cast<float>(i);

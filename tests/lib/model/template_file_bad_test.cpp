@@ -133,7 +133,7 @@ TEST(BadTemplateFile, APayloadLongerThanItsFieldsIsRefused) {
 TEST(BadTemplateFile, NumbersThatAreNotFiniteAreRefusedWhereverTheyStand) {
   const auto part = made_template();
   const std::vector<std::byte> good = bytes_of(*part);
-  ASSERT_EQ(kCloudsAt + 4U * (7U * 5U + 5U * 4U + 3U * 2U), good.size());
+  ASSERT_EQ(kCloudsAt + 4U * (7U * 5U + 6U * 4U + 3U * 2U), good.size());
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
         -std::numeric_limits<double>::infinity()}) {
@@ -184,6 +184,8 @@ TEST(BadTemplateFile, ValuesOutsideTheirRangeAreRefusedOnBothWays) {
       {"giant contour", [](Template& p) { p.contour[2].z_mm = 1e9F; }},
       {"long normal", [](Template& p) { p.surface[3].ny = 1.5F; }},
       {"giant surface", [](Template& p) { p.surface[0].x_mm = -1e9F; }},
+      {"negative weight", [](Template& p) { p.surface[1].weight = -0.5F; }},
+      {"giant weight", [](Template& p) { p.surface[2].weight = 1e6F; }},
       {"negative clearance", [](Template& p) { p.anchors[1].clearance_mm = -1.0F; }},
   };
   std::vector<std::byte> buffer(kTemplateFileBytesMax);

@@ -76,9 +76,9 @@ TEST(TemplateFile, HasTheBytesItAlwaysHad) {
   const std::vector<std::byte> bytes = bytes_of(*made_template());
   Fnv1a64 all;
   all.add(std::span<const std::byte>(bytes));
-  EXPECT_EQ(kTemplateFileVersion, 1U);
-  EXPECT_EQ(bytes.size(), 538U);
-  EXPECT_EQ(all.value(), 0x897192D424BBF7B0ULL);
+  EXPECT_EQ(kTemplateFileVersion, 2U);
+  EXPECT_EQ(bytes.size(), 554U);
+  EXPECT_EQ(all.value(), 0x7661AE6D0C75F51EULL);
 }
 
 TEST(TemplateFile, IsLittleEndianFromTheFirstByte) {

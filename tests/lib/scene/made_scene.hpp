@@ -10,6 +10,7 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/image/canny.hpp"
+#include "flatpose/image/dark_pit.hpp"
 #include "flatpose/image/fill.hpp"
 #include "flatpose/scene/scene.hpp"
 #include "tests/lib/rectify/scan_fixture.hpp"
@@ -107,6 +108,8 @@ inline std::size_t scene_bytes(const Scan& scan, const rectify::Grid& grid) {
     arena.rewind(kept_bytes);
   }
   image::reserve_fill_scratch(arena, grid.width_px);
+  arena.rewind(kept_bytes);
+  image::reserve_dark_pit_scratch(arena, grid.width_px, grid.height_px);
   arena.rewind(kept_bytes);
   image::reserve_edge_scratch(arena, grid.width_px, grid.height_px);
   return arena.required_bytes();
