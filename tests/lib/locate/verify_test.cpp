@@ -60,6 +60,34 @@ TEST(Verify, ContradictionsCountInFull) {
   EXPECT_LT(v.score, 0.5);
 }
 
+TEST(Verify, MissingSurfaceCountsManifold) {
+  // A pit in the middle of the surface, away from all of the contour.
+  const MadeScan scan = scan_of([](double x, double y) {
+    const Vec3 p = kTruth.inverse() * Vec3{x, y, test::kPartTop_mm};
+    const bool in_pit = std::fabs(p.x) < 6.0 && std::fabs(p.y) < 4.0;
+    return in_pit ? 0.0 : lone_block(x, y);
+  });
+  const MadeScene made(scan);
+  const model::Template part = test::block_part();
+  const auto with_weight = [&](double weight) {
+    VerifyConfig config;
+    config.contradiction_weight = weight;
+    return verify(part, made.fine, {}, kTruth, config);
+  };
+  const Verification once = with_weight(1.0);
+  const double confirmed =
+      static_cast<double>(once.surface.confirmed_count) / once.surface.visible_count;
+  EXPECT_GT(confirmed, 0.9);
+  EXPECT_LT(confirmed, 0.98);
+  const double contour = once.score / confirmed;  // what the contour makes of it
+  EXPECT_GT(contour, 0.97);
+  for (const double weight : {2.0, 3.0, 6.0}) {
+    EXPECT_NEAR(with_weight(weight).score, contour * (1.0 - weight * (1.0 - confirmed)), 1e-9);
+  }
+  EXPECT_EQ(with_weight(100.0).score, 0.0);
+  EXPECT_EQ(VerifyConfig{}.contradiction_weight, 3.0);
+}
+
 /// Half of the part's place holds something else, which says nothing about the part.
 void expect_half_seen(const Verification& v) {
   EXPECT_GT(v.visible, 0.35);

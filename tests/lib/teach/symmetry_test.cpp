@@ -102,6 +102,20 @@ TEST(SymmetryCenter, ForgivesAContourThatIsSeenUnevenly) {
   expect_center(part, 6, 0.3);
 }
 
+TEST(SymmetryCenter, OfARingIsLittleMovedByAHoleGoneAstray) {
+  // A shadow moved the hole's contour; the outline has twice as many points and one centre.
+  for (const double astray_mm : {0.5, 1.0, 2.0, 3.0}) {
+    model::Template ring = disc();
+    for (int i = 0; i < 90; ++i) {
+      const double a = 2.0 * kPi * i / 90;
+      ring.contour[ring.contour_count++] =
+          test::contour_point(kCenterX_mm + astray_mm + 12.0 * std::cos(a),
+                              kCenterY_mm + 12.0 * std::sin(a), -std::cos(a), -std::sin(a), 5.0);
+    }
+    expect_center(ring, model::kFullSymmetry, 0.25);
+  }
+}
+
 TEST(SymmetryCenter, IsTheMiddleWithoutSymmetry) {
   model::Template part = rectangle(60, 30);
   expect_center(part, 1, 0.05);
