@@ -70,16 +70,16 @@ TEST(Crowd, APartBetweenTwoIsFoundByTheirLeave) {
 }
 
 TEST(Crowd, APartIsLookedAtAgainWhenItsNeighboursAreFound) {
-  // Four touch the one between on a quarter of a side each; bars hide so much of them that they are
-  // considered after it.
+  // Four touch the one between on four tenths of a side each; bars hide so much of them that they
+  // are considered after it.
   const Block between = square_at(100.2, 75.3);
-  const std::vector<Block> around{square_at(60.2, 105.3), square_at(130.2, 115.3),
-                                  square_at(140.2, 45.3), square_at(70.2, 35.3)};
+  const std::vector<Block> around{square_at(60.2, 99.3), square_at(124.2, 115.3),
+                                  square_at(140.2, 51.3), square_at(76.2, 35.3)};
   std::vector<Block> all = around;
   all.push_back(between);
-  for (const auto& [x, y] : {std::pair{46.2, 105.3}, {154.2, 45.3}})
+  for (const auto& [x, y] : {std::pair{46.2, 99.3}, {154.2, 51.3}})
     all.push_back({test::pose_at(x, y, 40.0), 12.0, 50.0});
-  for (const auto& [x, y] : {std::pair{130.2, 129.3}, {70.2, 21.3}})
+  for (const auto& [x, y] : {std::pair{124.2, 129.3}, {76.2, 21.3}})
     all.push_back({test::pose_at(x, y, 40.0), 50.0, 12.0});
   const LocateResult r = found_squares(all);
   EXPECT_EQ(r.match_count, 5);
