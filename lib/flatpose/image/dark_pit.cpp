@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <span>
+
+#include "flatpose/image/lost_points.hpp"
 
 namespace flatpose::image {
 namespace {
 
-constexpr int kWidthMin_px = 3;
-constexpr int kWidthMax_px = 15;
+constexpr int kSideMin_px = 3;
 
 // What is known of a missing cell.
 constexpr std::uint8_t kLevelRow = 1;  // in a run of its row that is wide and level
@@ -20,7 +22,7 @@ constexpr std::uint8_t kShadowRising = 4;
 
 struct DarkPitScratch {
   ImageView<std::uint8_t> marks;
-  std::span<std::int32_t> run_px;  // missing cells above, by column
+  std::span<std::int32_t> run_px;  // by column: missing cells above, then sides of squares
 };
 
 DarkPitScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
@@ -28,60 +30,30 @@ DarkPitScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
           arena.take<std::int32_t>(static_cast<std::size_t>(width_px))};
 }
 
-double single_share(ImageView<const std::uint8_t> missing) noexcept {
-  std::int64_t count = 0;
-  for (int y = 1; y + 1 < missing.height_px; ++y) {
-    const std::uint8_t* above = missing.row(y - 1);
-    const std::uint8_t* row = missing.row(y);
-    const std::uint8_t* below = missing.row(y + 1);
-    int in_row = 0;
-    for (int x = 1; x + 1 < missing.width_px; ++x) {
-      in_row += row[x] & ~(row[x - 1] | row[x + 1] | above[x] | below[x]) & 1;
-    }
-    count += in_row;
-  }
-  return static_cast<double>(count) / missing.width_px / missing.height_px;
-}
-
-// A gap this wide is no accident: less than one is expected in the image when half the points of
-// its square have to be lost.
-int accidental_width_px(ImageView<const std::uint8_t> missing) noexcept {
-  constexpr double kArrangements = 20.0;
-  const double share = single_share(missing);
-  const double places = kArrangements * missing.width_px * missing.height_px;
-  int width_px = kWidthMin_px;
-  for (; width_px < kWidthMax_px; width_px += 2) {
-    double expected = places;
-    for (int point = 0; point < width_px * width_px / 2; ++point) expected *= share;
-    if (expected < 1.0) break;
-  }
-  return width_px;
-}
-
-// Whether kFirm_px cells from `first` on, `step` cells apart, were all seen: where most of the scan
-// is lost, a gap is nothing but more of that.
-constexpr int kFirm_px = 2;
-bool is_firm(const std::uint8_t* first, std::ptrdiff_t step) noexcept {
-  for (int i = 0; i < kFirm_px; ++i) {
-    if (first[i * step] != 0) return false;
-  }
-  return true;
+// Whether most of the cells beyond the end of a gap, `step` apart from `first` on, were seen: where
+// most of the scan is lost, a gap is nothing but more of that.
+constexpr int kBeside_px = 5;
+constexpr int kBesideSeenMin = 3;
+bool is_firm(const std::uint8_t* first, std::ptrdiff_t step, int count) noexcept {
+  int seen_count = 0;
+  for (int i = 0; i < std::min(count, kBeside_px); ++i) seen_count += first[i * step] == 0 ? 1 : 0;
+  return seen_count >= kBesideSeenMin;
 }
 
 void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
-                     int width_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
+                     int side_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
   for (int y = 0; y < missing.height_px; ++y) {
     const std::uint8_t* row = missing.row(y);
     const float* z_mm = filled_mm.row(y);
     std::uint8_t* mark = marks.row(y);
     std::fill_n(mark, missing.width_px, std::uint8_t{0});
-    for (int x = kFirm_px; x < missing.width_px; ++x) {
+    for (int x = 1; x < missing.width_px; ++x) {
       if (row[x] == 0 || row[x - 1] != 0) continue;
       int end = x + 1;
       while (end < missing.width_px && row[end] != 0) ++end;
       const bool firm =
-          end + kFirm_px <= missing.width_px && is_firm(row + x - 1, -1) && is_firm(row + end, 1);
-      if (firm && end - x >= width_min_px) {
+          is_firm(row + x - 1, -1, x) && is_firm(row + end, 1, missing.width_px - end);
+      if (firm && end - x >= side_min_px) {
         const float highest_mm = std::max(z_mm[x - 1], z_mm[end]);
         for (int i = x; i < end; ++i) mark[i] = highest_mm - z_mm[i] <= level_mm ? kLevelRow : 0;
       }
@@ -95,9 +67,8 @@ void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const floa
 void mark_level_run(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
                     float level_mm, int x, int begin, int end,
                     ImageView<std::uint8_t> marks) noexcept {
-  if (begin < kFirm_px || end + kFirm_px > missing.height_px) return;
-  if (!is_firm(missing.row(begin - 1) + x, -missing.stride_px) ||
-      !is_firm(missing.row(end) + x, missing.stride_px)) {
+  if (begin == 0 || !is_firm(missing.row(begin - 1) + x, -missing.stride_px, begin) ||
+      !is_firm(missing.row(end) + x, missing.stride_px, missing.height_px - end)) {
     return;
   }
   const float highest_mm = std::max(filled_mm(x, begin - 1), filled_mm(x, end));
@@ -107,7 +78,7 @@ void mark_level_run(ImageView<const std::uint8_t> missing, ImageView<const float
 }
 
 void mark_level_columns(const DarkPitScratch& s, ImageView<const std::uint8_t> missing,
-                        ImageView<const float> filled_mm, int width_min_px,
+                        ImageView<const float> filled_mm, int side_min_px,
                         float level_mm) noexcept {
   std::fill(s.run_px.begin(), s.run_px.end(), 0);
   for (int y = 0; y < missing.height_px; ++y) {
@@ -118,11 +89,15 @@ void mark_level_columns(const DarkPitScratch& s, ImageView<const std::uint8_t> m
         ++run_px;
         continue;
       }
-      if (run_px >= width_min_px)
+      if (run_px >= side_min_px)
         mark_level_run(missing, filled_mm, level_mm, x, y - run_px, y, s.marks);
       run_px = 0;
     }
   }
+}
+
+bool has_pits(ImageView<const std::uint8_t> marks, int y) noexcept {
+  return std::memchr(marks.row(y), kPit, static_cast<std::size_t>(marks.width_px)) != nullptr;
 }
 
 // A shadow lies beside what casts it: where a diagonal (dx, 1) of missing cells ends at something
@@ -137,6 +112,7 @@ void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float>
     return missing.contains(x, y) ? filled_mm(x, y) : -std::numeric_limits<float>::infinity();
   };
   for (int y = 0; y < missing.height_px; ++y) {
+    if (!has_pits(marks, y)) continue;
     for (int x = 0; x < missing.width_px; ++x) {
       if (marks(x, y) != kPit) continue;
       const auto mark = [&](int i) -> std::uint8_t& { return marks(x + i * dx, y + i); };
@@ -158,6 +134,37 @@ void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float>
   }
 }
 
+// Lowers what lies in a square of pits as large as none is by accident. The largest square that
+// ends in a cell is one more than the smallest of those that end to its left, above, and between.
+void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
+                   ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+  const auto lower = [&](int end_x, int end_y) {
+    for (int y = end_y - side_min_px + 1; y <= end_y; ++y) {
+      for (int x = end_x - side_min_px + 1; x <= end_x; ++x) {
+        if (missing(x, y) == kDarkPit) continue;
+        missing(x, y) = kDarkPit;
+        filled_mm(x, y) -= drop_mm;
+      }
+    }
+  };
+  std::fill(s.run_px.begin(), s.run_px.end(), 0);
+  bool above_is_empty = true;
+  for (int y = 0; y < missing.height_px; ++y) {
+    const bool is_empty = !has_pits(s.marks, y);
+    if (is_empty && above_is_empty) continue;
+    above_is_empty = is_empty;
+    std::int32_t left_px = 0;
+    std::int32_t between_px = 0;
+    for (int x = 0; x < missing.width_px; ++x) {
+      const std::int32_t above_px = s.run_px[x];
+      left_px = s.marks(x, y) == kPit ? 1 + std::min({left_px, between_px, above_px}) : 0;
+      s.run_px[x] = left_px;
+      between_px = above_px;
+      if (left_px >= side_min_px) lower(x, y);
+    }
+  }
+}
+
 }  // namespace
 
 void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcept {
@@ -174,18 +181,12 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
   const DarkPitScratch s = lay_out(scratch, missing.width_px, missing.height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
 
-  const int width_min_px = accidental_width_px(missing);
-  mark_level_rows(missing, filled_mm, width_min_px, config.level_mm, s.marks);
-  mark_level_columns(s, missing, filled_mm, width_min_px, config.level_mm);
+  const int side_min_px = accidental_side_px(missing, kSideMin_px);
+  mark_level_rows(missing, filled_mm, side_min_px, config.level_mm, s.marks);
+  mark_level_columns(s, missing, filled_mm, side_min_px, config.level_mm);
   clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
-  for (int y = 0; y < missing.height_px; ++y) {
-    for (int x = 0; x < missing.width_px; ++x) {
-      if (s.marks(x, y) != kPit) continue;
-      filled_mm(x, y) -= config.drop_mm;
-      missing(x, y) = kDarkPit;
-    }
-  }
+  lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm);
   return Status::kOk;
 }
 
