@@ -26,6 +26,7 @@
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/image/edge.hpp"
 
 namespace flatpose::image {
@@ -62,6 +63,7 @@ void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept;
 /// is full: then `out` holds the first edges and `kind_out` all.  Thread: reentrant.
 Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::uint8_t> missing,
                          double cell_mm, const EdgeConfig& config, Arena& scratch,
-                         ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out) noexcept;
+                         ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out,
+                         VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

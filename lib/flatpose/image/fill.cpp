@@ -2,37 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "flatpose/image/glance.hpp"
+#include "flatpose/image/row_kernels.hpp"
 
 namespace flatpose::image {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-// Marks what is missing; returns whether anything is.
-bool mark_missing(const float* __restrict height_mm, int width_px,
-                  std::uint8_t* __restrict missing) noexcept {
-  std::uint8_t any = 0;
-  for (int x = 0; x < width_px; ++x) {
-    const auto mark = static_cast<std::uint8_t>(std::fabs(height_mm[x]) < kNothing ? 0 : 1);
-    missing[x] = mark;  // NaN too
-    any |= mark;
-  }
-  return any != 0;
-}
-
-// Missing cells take what is carried; what is there is carried on.
-void carry_down(const std::uint8_t* __restrict missing, int width_px, float* __restrict carried,
-                float* __restrict filled_mm) noexcept {
-  for (int x = 0; x < width_px; ++x) {
-    const float kept = missing[x] != 0 ? carried[x] : filled_mm[x];
-    carried[x] = kept;
-    filled_mm[x] = kept;
-  }
-}
 
 // Missing cells, which hold what lies above, take the lowest of that, their run's neighbours and
 // what is carried up. Returns whether one is left with nothing.
@@ -48,15 +26,6 @@ bool take_lowest(const std::uint8_t* missing, int width_px, const float* carried
     }
   });
   return nothing_left;
-}
-
-void carry_up(const std::uint8_t* __restrict missing, int width_px,
-              const float* __restrict filled_mm, float* __restrict carried) noexcept {
-  for (int x = 0; x < width_px; ++x) {
-    const float before = carried[x];  // read in any case: no branch
-    const float here = filled_mm[x];
-    carried[x] = missing[x] != 0 ? before : here;
-  }
 }
 
 float lowest_of(ImageView<const float> image) noexcept {
@@ -96,7 +65,7 @@ void reserve_fill_scratch(Arena& arena, int width_px) noexcept {
 }
 
 Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm,
-                    ImageView<std::uint8_t> missing, Arena& scratch) noexcept {
+                    ImageView<std::uint8_t> missing, Arena& scratch, VectorPath path) noexcept {
   if (!same_shape(height_mm, filled_mm) || !same_shape(height_mm, missing)) {
     return Status::kShapeMismatch;
   }
@@ -107,19 +76,19 @@ Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm
   const std::span<float> carried = scratch.take<float>(static_cast<std::size_t>(w));
   if (carried.empty()) return Status::kOutOfMemory;
 
+  const RowKernels& kernels = row_kernels(path);
   bool any_missing = false;
   std::fill(carried.begin(), carried.end(), kNothing);
   for (int y = 0; y < h; ++y) {
-    any_missing |= mark_missing(height_mm.row(y), w, missing.row(y));
-    if (filled_mm.row(y) != height_mm.row(y)) std::copy_n(height_mm.row(y), w, filled_mm.row(y));
-    carry_down(missing.row(y), w, carried.data(), filled_mm.row(y));
+    any_missing |=
+        kernels.carry_down(height_mm.row(y), w, carried.data(), filled_mm.row(y), missing.row(y));
   }
   if (!any_missing) return Status::kOk;
   bool nothing_left = false;
   std::fill(carried.begin(), carried.end(), kNothing);
   for (int y = h - 1; y >= 0; --y) {
     nothing_left |= take_lowest(missing.row(y), w, carried.data(), filled_mm.row(y));
-    carry_up(missing.row(y), w, filled_mm.row(y), carried.data());
+    kernels.carry_up(missing.row(y), filled_mm.row(y), w, carried.data());
   }
   const bool all_missing = nothing_left && !take_floor(missing, filled_mm);
   return all_missing ? Status::kTooFewPoints : Status::kOk;

@@ -9,6 +9,7 @@
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -22,6 +23,7 @@ void reserve_fill_scratch(Arena& arena, int width_px) noexcept;
 /// Fails: kShapeMismatch, kOutOfMemory; kTooFewPoints when nothing is valid: all cells are then 0
 /// and missing.  Thread: reentrant.
 Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm,
-                    ImageView<std::uint8_t> missing, Arena& scratch) noexcept;
+                    ImageView<std::uint8_t> missing, Arena& scratch,
+                    VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

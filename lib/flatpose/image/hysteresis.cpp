@@ -5,6 +5,7 @@
 
 #include "flatpose/image/edge.hpp"
 #include "flatpose/image/glance.hpp"
+#include "flatpose/image/row_kernels.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -50,19 +51,16 @@ class Flood {
 
 }  // namespace
 
-void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack) noexcept {
+void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack,
+                    VectorPath path) noexcept {
   Flood flood(marks, stack);
   for (int y = 0; y < marks.height_px; ++y) {
     for_each_set(marks.row(y), marks.width_px, [&](int x) {
       if ((marks(x, y) & kStrongMark) != 0) flood.keep(x, y);
     });
   }
-  for (int y = 0; y < marks.height_px; ++y) {
-    std::uint8_t* row = marks.row(y);
-    for (int x = 0; x < marks.width_px; ++x) {
-      row[x] = (row[x] & kWeakMark) != 0 ? std::uint8_t{0} : row[x];
-    }
-  }
+  const RowKernels& kernels = row_kernels(path);
+  for (int y = 0; y < marks.height_px; ++y) kernels.drop_weak(marks.width_px, marks.row(y));
 }
 
 }  // namespace flatpose::image

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "flatpose/core/image_view.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -17,6 +18,7 @@ inline constexpr std::uint8_t kKindBits = 0x0F;
 /// of its family (jumps of both kinds, or creases), keeps its kind; all else becomes 0.
 /// Shape: `stack` has room for every cell; the outermost ring carries no marks.
 /// Cost: linear in cells.  Thread: reentrant.
-void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack) noexcept;
+void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack,
+                    VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

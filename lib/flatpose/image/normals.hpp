@@ -11,15 +11,16 @@
 
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
 /// Writes x and y of the unit normal, z being positive; NaN where any of the 3x3 heights is
 /// missing. Shape: all three alike; no overlap.  Units: heights and `cell_mm` in mm, normals of
-/// length 1. Cost: two passes, linear in cells.  Memory: none. Fails: kShapeMismatch,
+/// length 1. Cost: one pass, linear in cells.  Memory: none. Fails: kShapeMismatch,
 /// kInvalidArgument (cell_mm not positive).  Thread: reentrant.
 Status normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
-                  ImageView<float> normal_y) noexcept;
+                  ImageView<float> normal_y, VectorPath path = VectorPath::kPortable) noexcept;
 
 /// The third component of a normal kept as its first two.
 [[nodiscard]] inline float normal_z(float normal_x, float normal_y) noexcept {

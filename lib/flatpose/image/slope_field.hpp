@@ -20,33 +20,26 @@ namespace flatpose::image {
 class SlopeField {
  public:
   SlopeField(ImageView<const float> height_mm_, ImageView<const std::uint8_t> missing_,
-             ImageView<const Vec2f> slope_) noexcept
+             ImageView<const float> slope_x_, ImageView<const float> slope_y_) noexcept
       : height_mm(height_mm_),
         missing(missing_),
-        slope(slope_),
+        slope_x(slope_x_),
+        slope_y(slope_y_),
         last_{last(height_mm.width_px, 0), last(height_mm.height_px, 0)},
         last_inner_{last(height_mm.width_px, 1), last(height_mm.height_px, 1)} {}
 
   ImageView<const float> height_mm;
   ImageView<const std::uint8_t> missing;
-  ImageView<const Vec2f> slope;
+  ImageView<const float> slope_x;
+  ImageView<const float> slope_y;
 
   /// Bilinear slope; places outside the ring of border cells, where Sobel is wrong, are moved in.
   [[nodiscard]] Vec2f slope_at(Vec2f p) const noexcept {
     const Place at(p, Float2{1.0F, 1.0F}, last_inner_);
-    const Vec2f* top = slope.row(at.row) + at.column;
-    const Vec2f* bottom = top + slope.stride_px;
-    const Float2 a = load(top) + at.u * (load(top + 1) - load(top));
-    const Float2 b = load(bottom) + at.u * (load(bottom + 1) - load(bottom));
-    return unpacked(a + at.v * (b - a));
+    return {blend(slope_x, at), blend(slope_y, at)};
   }
   [[nodiscard]] float height_at(Vec2f p) const noexcept {
-    const Place at(p, Float2{}, last_);
-    const float* top = height_mm.row(at.row) + at.column;
-    const float* bottom = top + height_mm.stride_px;
-    const float a = top[0] + at.u * (top[1] - top[0]);
-    const float b = bottom[0] + at.u * (bottom[1] - bottom[0]);
-    return a + at.v * (b - a);
+    return blend(height_mm, Place(p, Float2{}, last_));
   }
   [[nodiscard]] bool missing_at(Vec2f p) const noexcept {
     const Place at(p, Float2{}, last_);
@@ -83,6 +76,13 @@ class SlopeField {
       u = rest[0], v = rest[1];
     }
   };
+  static float blend(ImageView<const float> image, const Place& at) noexcept {
+    const float* top = image.row(at.row) + at.column;
+    const float* bottom = top + image.stride_px;
+    const float a = top[0] + at.u * (top[1] - top[0]);
+    const float b = bottom[0] + at.u * (bottom[1] - bottom[0]);
+    return a + at.v * (b - a);
+  }
   // Just below the last cell, so that its right neighbour exists.
   static float last(int size_px, int margin) noexcept {
     return static_cast<float>(size_px - 1 - margin) * (1.0F - 1e-6F);

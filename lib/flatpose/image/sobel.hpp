@@ -5,7 +5,7 @@
 
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
-#include "flatpose/image/vec2f.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -13,10 +13,7 @@ namespace flatpose::image {
 /// cells is NaN.
 /// Shape: all three alike; no overlap.  Units: mm per cell.  Cost: one pass, linear in cells.
 /// Memory: none.  Fails: kShapeMismatch.  Thread: reentrant.
-Status sobel(ImageView<const float> height_mm, ImageView<float> slope_x,
-             ImageView<float> slope_y) noexcept;
-
-/// The same, x and y side by side.
-Status sobel(ImageView<const float> height_mm, ImageView<Vec2f> slope) noexcept;
+Status sobel(ImageView<const float> height_mm, ImageView<float> slope_x, ImageView<float> slope_y,
+             VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

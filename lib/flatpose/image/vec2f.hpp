@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace flatpose::image {
 
@@ -22,15 +21,5 @@ struct alignas(8) Vec2f {
 /// Both components of a Vec2f side by side in a register.
 using Float2 = float __attribute__((vector_size(sizeof(Vec2f))));
 using Int2 = std::int32_t __attribute__((vector_size(sizeof(Vec2f))));
-[[nodiscard]] inline Float2 load(const Vec2f* from) noexcept {
-  Float2 both;
-  std::memcpy(&both, from, sizeof both);
-  return both;
-}
-[[nodiscard]] inline Vec2f unpacked(Float2 both) noexcept { return {both[0], both[1]}; }
-
-[[nodiscard]] inline Float2 absolute(Float2 both) noexcept {
-  return reinterpret_cast<Float2>(reinterpret_cast<Int2>(both) & 0x7fffffff);
-}
 
 }  // namespace flatpose::image

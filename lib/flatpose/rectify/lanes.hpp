@@ -10,6 +10,9 @@
 #ifndef FLATPOSE_LANES
 #define FLATPOSE_LANES 4
 #endif
+#if FLATPOSE_LANES > 4
+#include <immintrin.h>
+#endif
 
 namespace flatpose::rectify {
 namespace {
@@ -42,6 +45,30 @@ inline Floats smaller(Floats a, Floats b) noexcept { return a < b ? a : b; }
 inline Floats larger(Floats a, Floats b) noexcept { return a > b ? a : b; }
 inline Floats absolute(Floats lanes) noexcept {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(lanes) & 0x7fffffff);
+}
+inline Ints to_int(Floats lanes) noexcept { return __builtin_convertvector(lanes, Ints); }
+inline Floats spread(float value) noexcept { return value - Floats{}; }
+inline Floats square_root(Floats lanes) noexcept {
+#if FLATPOSE_LANES == 16
+  return reinterpret_cast<Floats>(_mm512_maskz_sqrt_ps(0xFFFF, reinterpret_cast<__m512>(lanes)));
+#elif FLATPOSE_LANES == 8
+  return reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(lanes)));
+#else
+  for (int k = 0; k < kLanes; ++k) lanes[k] = __builtin_sqrtf(lanes[k]);
+  return lanes;
+#endif
+}
+/// base[index] for each lane.
+inline Floats gather(const float* base, Ints index) noexcept {
+#if FLATPOSE_LANES == 16
+  return reinterpret_cast<Floats>(_mm512_mask_i32gather_ps(
+      __m512{}, 0xFFFF, reinterpret_cast<__m512i>(index), base, sizeof(float)));
+#elif FLATPOSE_LANES == 8
+  return reinterpret_cast<Floats>(
+      _mm256_i32gather_ps(base, reinterpret_cast<__m256i>(index), sizeof(float)));
+#else
+  return Floats{base[index[0]], base[index[1]], base[index[2]], base[index[3]]};
+#endif
 }
 inline bool any(Ints mask) noexcept {
   std::uint64_t words[FLATPOSE_LANES / 2];

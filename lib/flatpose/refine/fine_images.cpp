@@ -22,7 +22,8 @@ Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept
   if (const Status s = image::edge_distances(scene.edges, {}, images.edge_distance_third_px);
       s != Status::kOk)
     return s;
-  return image::normal_map(scene.filled_mm, images.grid.cell_mm, images.normal_x, images.normal_y);
+  return image::normal_map(scene.filled_mm, images.grid.cell_mm, images.normal_x, images.normal_y,
+                           scene.vector_path);
 }
 
 }  // namespace flatpose::refine

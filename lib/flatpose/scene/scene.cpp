@@ -67,13 +67,14 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   if (arena.failed()) return Status::kOutOfMemory;
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
+  scene.vector_path = config.vector_path;
   if (const Status s =
           rectify::rectify(scan, frames.work_T_scan, rectify_config(config), arena, scene.map);
       s != Status::kOk) {
     return s;
   }
-  const Status filled =
-      image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing, arena);
+  const Status filled = image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing,
+                                            arena, config.vector_path);
   if (filled != Status::kOk) return filled;
   if (const Status s =
           image::lower_dark_pits(pit_config(config), arena, scene.missing, scene.filled_mm);
@@ -82,7 +83,7 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   }
   const Result<int> edge_count =
       image::detect_edges(scene.filled_mm, scene.missing, grid.cell_mm, edge_config(config), arena,
-                          scene.edge_kind, edge_memory);
+                          scene.edge_kind, edge_memory, config.vector_path);
   if (!edge_count) return edge_count.status();
   scene.edges = edge_memory.first(static_cast<std::size_t>(*edge_count));
   return Status::kOk;

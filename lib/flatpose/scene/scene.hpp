@@ -34,6 +34,7 @@ struct Scene {
   std::span<const image::EdgePoint> edges;  ///< Jumps and borders of missing data.
   double noise_mm = 0.0;
   double pitch_mm = 0.0;
+  VectorPath vector_path = VectorPath::kPortable;  ///< For what is made of the scene.
 };
 
 /// The smallest step of height that counts as a contour.

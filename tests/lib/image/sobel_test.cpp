@@ -59,25 +59,5 @@ TEST(Sobel, RefusesDifferentShapes) {
   EXPECT_EQ(sobel(a.view(), b.view(), a.view()), Status::kShapeMismatch);
 }
 
-TEST(Sobel, SideBySideIsTheSame) {
-  for (int h = 1; h <= 9; ++h) {
-    for (int w = 1; w <= 23; ++w) {
-      const Image<float> z = random_image(w, h, static_cast<unsigned>(31 * w + h));
-      Image<float> x(w, h), y(w, h);
-      Image<Vec2f> both(w, h);
-      ASSERT_EQ(sobel(z.view(), x.view(), y.view()), Status::kOk);
-      ASSERT_EQ(sobel(z.view(), both.view()), Status::kOk);
-      for (int row = 0; row < h; ++row) {
-        for (int column = 0; column < w; ++column) {
-          ASSERT_EQ(both(column, row).x, x(column, row));
-          ASSERT_EQ(both(column, row).y, y(column, row));
-        }
-      }
-    }
-  }
-  Image<Vec2f> other(3, 4);
-  EXPECT_EQ(sobel(random_image(4, 4, 1).view(), other.view()), Status::kShapeMismatch);
-}
-
 }  // namespace
 }  // namespace flatpose::image

@@ -1,10 +1,25 @@
-#include "flatpose/image/jump.hpp"
+#pragma once
+// Jumps tested and measured one at a time: what the loops over many must come to, in every bit.
 
 #include <algorithm>
 #include <array>
 
-namespace flatpose::image {
-namespace {
+#include "flatpose/image/jump_batch.hpp"
+#include "flatpose/image/slope_field.hpp"
+
+namespace flatpose::image::slow {
+
+struct Jump {
+  bool found = false;
+  float step_mm = 0.0F;
+  bool below_is_missing = false;
+};
+
+struct Measured {
+  Vec2f at;
+  Vec2f fall;
+  float step_mm;
+};
 
 // A cell with a value at least this much larger than the next is larger; less is a tie, which the
 // upper side wins. Without it rounding would pick both or none of the two cells beside a step.
@@ -21,22 +36,18 @@ struct Ridge {
   bool found = false;
 };
 
-// smaller_if_agreed axis by axis, without a branch: which side is steeper is anybody's guess.
-Vec2f agreed(Vec2f a, Vec2f b) noexcept {
-  const Float2 p = {a.x, a.y};
-  const Float2 q = {b.x, b.y};
-  const Float2 smaller = absolute(p) < absolute(q) ? p : q;
-  return unpacked(p * q > 0.0F ? smaller : Float2{});
+inline Vec2f agreed(Vec2f a, Vec2f b) noexcept {
+  return {smaller_if_agreed(a.x, b.x), smaller_if_agreed(a.y, b.y)};
 }
 
-Vec2f cell_slope(const SlopeField& f, int column, int row) noexcept {
-  const int x = std::clamp(column, 1, f.slope.width_px - 2);
-  const int y = std::clamp(row, 1, f.slope.height_px - 2);
-  return f.slope(x, y);
+inline Vec2f cell_slope(const SlopeField& f, int column, int row) noexcept {
+  const int x = std::clamp(column, 1, f.slope_x.width_px - 2);
+  const int y = std::clamp(row, 1, f.slope_x.height_px - 2);
+  return {f.slope_x(x, y), f.slope_y(x, y)};
 }
 
 // The direction of the jump at a cell, the surface's own slope taken off.
-Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept {
+inline Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept {
   Ridge ridge{{static_cast<float>(column), static_cast<float>(row)}, {}, {}, false};
   const Vec2f here = cell_slope(f, column, row);
   ridge.surface_slope = agreed(
@@ -56,7 +67,7 @@ Ridge find_ridge(const SlopeField& f, int column, int row, float least) noexcept
 }
 
 // The surface's slope beside an edge found, read along five cells of the contour on each side.
-Vec2f steady_surface_slope(const SlopeField& f, const Ridge& r) noexcept {
+inline Vec2f steady_surface_slope(const SlopeField& f, const Ridge& r) noexcept {
   const Vec2f along = 2.0F * quarter_turn(r.fall);
   const auto mean = [&](Vec2f p) {
     return 0.5F * f.slope_at(p) + 0.25F * (f.slope_at(p - along) + f.slope_at(p + along));
@@ -66,12 +77,12 @@ Vec2f steady_surface_slope(const SlopeField& f, const Ridge& r) noexcept {
 }
 
 // How steeply it falls t cells along the ridge's direction.
-float fall_at(const SlopeField& f, const Ridge& r, float t) noexcept {
+inline float fall_at(const SlopeField& f, const Ridge& r, float t) noexcept {
   return -dot(f.slope_at(r.at + t * r.fall), r.fall);
 }
 
 // The surface's fall on one side: what lasts from near to far. Where nothing was seen it is level.
-float side_fall(const SlopeField& f, Vec2f edge, Vec2f fall, float side) noexcept {
+inline float side_fall(const SlopeField& f, Vec2f edge, Vec2f fall, float side) noexcept {
   if (f.missing_at(edge + (side * kNear_px) * fall)) return 0.0F;
   return smaller_if_agreed(-f.climb_at(edge + (side * kNear_px) * fall, fall),
                            -f.climb_at(edge + (side * kFar_px) * fall, fall));
@@ -83,7 +94,7 @@ struct Sides {
   float step_mm = 0.0F;
 };
 
-Sides look_beside(const SlopeField& f, Vec2f edge, Vec2f fall) noexcept {
+inline Sides look_beside(const SlopeField& f, Vec2f edge, Vec2f fall) noexcept {
   Sides s;
   s.before = side_fall(f, edge, fall, -1.0F);
   s.after = side_fall(f, edge, fall, 1.0F);
@@ -93,7 +104,7 @@ Sides look_beside(const SlopeField& f, Vec2f edge, Vec2f fall) noexcept {
 }
 
 // Top of the parabola through values at -1, 0 and 1, the middle one being the largest.
-float top_of_parabola(float before, float here, float after) noexcept {
+inline float top_of_parabola(float before, float here, float after) noexcept {
   const float bend = before - 2.0F * here + after;
   if (!(bend < 0.0F)) return 0.0F;
   return std::clamp(0.5F * (before - after) / bend, -1.0F, 1.0F);
@@ -102,47 +113,23 @@ float top_of_parabola(float before, float here, float after) noexcept {
 constexpr int kBell_px = 4;
 constexpr std::array<float, 2 * kBell_px + 1> kBell = {1, 2, 3, 4, 5, 4, 3, 2, 1};
 
-// Adds a row of the bell: of the nine falls those that point with the ridge. The others add
-// nothing, which changes no bit and needs no branch.
-Float2 add_bell_row(const Vec2f* slopes, float weight, Float2 surface_slope, Float2 ridge_fall,
-                    float least, Float2 sum) noexcept {
-  for (std::size_t i = 0; i < kBell.size(); ++i) {
-    const Float2 fall = surface_slope - load(slopes + i);
-    const Float2 product = fall * ridge_fall;
-    const Float2 with_ridge = product + __builtin_shufflevector(product, product, 1, 0);
-    const Float2 part = (kBell[i] * weight) * fall;
-    sum += with_ridge >= least ? part : Float2{};
-  }
-  return sum;
-}
-
 // Sum of the slopes around a place that point with the ridge, weighted by a bell: the direction of
 // the contour along some cells of it.
-Vec2f mean_fall(const SlopeField& f, const Ridge& r, int column, int row) noexcept {
+inline Vec2f mean_fall(const SlopeField& f, const Ridge& r, int column, int row) noexcept {
   const float least = 0.25F * dot(r.surface_slope - f.slope_at(r.at), r.fall);
-  const Float2 surface_slope = {r.surface_slope.x, r.surface_slope.y};
-  const Float2 ridge_fall = {r.fall.x, r.fall.y};
-  const bool is_inside = column > kBell_px && column + kBell_px + 1 < f.slope.width_px;
-  Float2 sum{};
+  Vec2f total{};
   for (int dy = -kBell_px; dy <= kBell_px; ++dy) {
-    const int y = std::clamp(row + dy, 1, f.slope.height_px - 2);
-    std::array<Vec2f, kBell.size()> at_border;
-    const Vec2f* slopes = f.slope.row(y) + column - kBell_px;
-    if (!is_inside) {
-      for (int dx = -kBell_px; dx <= kBell_px; ++dx)
-        at_border[dx + kBell_px] = cell_slope(f, column + dx, y);
-      slopes = at_border.data();
+    for (int dx = -kBell_px; dx <= kBell_px; ++dx) {
+      const Vec2f fall = r.surface_slope - cell_slope(f, column + dx, row + dy);
+      if (!(dot(fall, r.fall) >= least)) continue;
+      total = total + (kBell[dx + kBell_px] * kBell[dy + kBell_px]) * fall;
     }
-    sum = add_bell_row(slopes, kBell[dy + kBell_px], surface_slope, ridge_fall, least, sum);
   }
-  const Vec2f total = unpacked(sum);
   const float length = norm(total);
   return length > 0.0F && length < kFinite ? (1.0F / length) * total : r.fall;
 }
 
-}  // namespace
-
-JumpTest test_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
+inline Jump test_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
   const Ridge r = find_ridge(f, column, row, jump_low_mm / kSmear_px);
   if (!r.found) return {};
   const float here = fall_at(f, r, 0.0F);
@@ -160,25 +147,16 @@ JumpTest test_jump(const SlopeField& f, int column, int row, float jump_low_mm) 
   const Sides sides = look_beside(f, edge, r.fall);
   const float excess = here - std::max(0.0F, std::max(sides.before, sides.after));
   const bool below_missing = f.missing_at(edge + kBelow_px * r.fall);
-  return {std::min(sides.step_mm, kSmear_px * excess),
-          below_missing ? EdgeKind::kMissingBorder : EdgeKind::kJump};
+  return {true, std::min(sides.step_mm, kSmear_px * excess), below_missing};
 }
 
-EdgePoint measure_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
+inline Measured measure_jump(const SlopeField& f, int column, int row, float jump_low_mm) noexcept {
   Ridge r = find_ridge(f, column, row, jump_low_mm / kSmear_px);
   r.surface_slope = steady_surface_slope(f, r);
   r.fall = mean_fall(f, r, column, row);
   const auto fall = [&](float t) { return -f.climb_at(r.at + t * r.fall, r.fall); };
   const Vec2f edge = r.at + top_of_parabola(fall(-1.0F), fall(0.0F), fall(1.0F)) * r.fall;
-  EdgePoint point;
-  point.x_px = edge.x;
-  point.y_px = edge.y;
-  point.dx = r.fall.x;
-  point.dy = r.fall.y;
-  point.step_mm = std::max(0.0F, look_beside(f, edge, r.fall).step_mm);
-  point.column = static_cast<std::int16_t>(column);
-  point.row = static_cast<std::int16_t>(row);
-  return point;
+  return {edge, r.fall, std::max(0.0F, look_beside(f, edge, r.fall).step_mm)};
 }
 
-}  // namespace flatpose::image
+}  // namespace flatpose::image::slow

@@ -1,0 +1,61 @@
+#pragma once
+// The loops of this room that run over all cells, or over many edges side by side. Their text is
+// compiled once for every vector width; all give the same bits.
+
+#include <cstdint>
+
+#include "flatpose/core/image_view.hpp"
+#include "flatpose/core/vector_path.hpp"
+#include "flatpose/image/jump_batch.hpp"
+
+namespace flatpose::image {
+
+/// Marks of a cell at which there may be an edge.
+inline constexpr std::uint8_t kMaybeJump = 1;
+inline constexpr std::uint8_t kMaybeCrease = 2;
+
+/// Three rows of a height map, one below the other.
+struct ThreeRows {
+  const float* above;
+  const float* here;
+  const float* below;
+};
+
+/// Row y of an image and those beside it; the border's rows are their own neighbours.
+[[nodiscard]] inline ThreeRows three_rows(ImageView<const float> image, int y) noexcept {
+  const int last = image.height_px - 1;
+  return {image.row(y > 0 ? y - 1 : 0), image.row(y), image.row(y < last ? y + 1 : y)};
+}
+
+struct RowKernels {
+  /// Marks what is missing of a row; such cells take what is carried, all others are carried on.
+  /// `filled_mm` may be `height_mm`. Returns whether any was missing.
+  bool (*carry_down)(const float* height_mm, int width_px, float* carried, float* filled_mm,
+                     std::uint8_t* missing) noexcept;
+  /// What is not missing is carried on.
+  void (*carry_up)(const std::uint8_t* missing, const float* filled_mm, int width_px,
+                   float* carried) noexcept;
+  /// Sobel's slopes of the middle row.
+  void (*sobel)(const ThreeRows& height_mm, int width_px, float* slope_x, float* slope_y) noexcept;
+  /// Turns slopes into the first two components of unit normals.
+  void (*normalise)(float scale_x, float scale_y, int width_px, float* x, float* y) noexcept;
+  /// Marks the cells at which the slope, less that of both sides, is at least `least`; rows are
+  /// kBeside_px apart, held off the border. Clears the marks of all others.
+  void (*mark_jumps)(const float* slope_x, const ThreeRows& slope_y, int width_px, float least,
+                     std::uint8_t* marks) noexcept;
+  /// Marks become kinds: those that are still weak become none.
+  void (*drop_weak)(int width_px, std::uint8_t* marks) noexcept;
+
+  void (*test_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
+  void (*measure_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
+};
+
+/// The loops for a path; the portable ones where this build has no other.
+[[nodiscard]] const RowKernels& row_kernels(VectorPath path) noexcept;
+
+/// Those that exist: reached through row_kernels() alone.
+extern const RowKernels kPortableRowKernels;
+extern const RowKernels kAvx2RowKernels;
+extern const RowKernels kAvx512RowKernels;
+
+}  // namespace flatpose::image

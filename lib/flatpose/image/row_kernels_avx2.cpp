@@ -1,0 +1,7 @@
+#define FLATPOSE_LANES 8
+#include "flatpose/image/row_kernels.inc"
+
+namespace flatpose::image {
+const RowKernels kAvx2RowKernels = {carry_down, carry_up,  sobel,      normalise,
+                                    mark_jumps, drop_weak, test_jumps, measure_jumps};
+}  // namespace flatpose::image

@@ -1,0 +1,146 @@
+// The loops over rows against the plainest form of each, on every path and at every width.
+
+#include "flatpose/image/row_kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "flatpose/image/hysteresis.hpp"
+#include "tests/lib/image/image.hpp"
+#include "tests/lib/search/vector_paths.hpp"
+
+namespace flatpose::image {
+namespace {
+
+constexpr int kWidthMax_px = 70;
+
+/// Calls body(kernels, width, z) with heights of five rows, some of them missing when asked for.
+template <class Body>
+void for_each_path_and_width(double missing_share, const Body& body) {
+  for (const VectorPath path : vector_paths()) {
+    for (int width_px = 1; width_px <= kWidthMax_px; ++width_px) {
+      Image<float> z = random_image(width_px, 5, static_cast<unsigned>(width_px));
+      std::mt19937 generator(7);
+      std::uniform_real_distribution<double> u(0.0, 1.0);
+      for (int i = 0; i < 5 * width_px; ++i) {
+        if (u(generator) < missing_share) z(i % width_px, i / width_px) = kMissing;
+      }
+      body(row_kernels(path), width_px, z);
+    }
+  }
+}
+
+void expect_same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::isnan(a[i]) && std::isnan(b[i])) continue;  // whose payload is nobody's
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(a[i]), std::bit_cast<std::uint32_t>(b[i])) << i;
+  }
+}
+
+using Floats = std::vector<float>;
+using Bytes = std::vector<std::uint8_t>;
+
+TEST(RowKernels, CarryWhatIsThereToWhatIsMissing) {
+  for_each_path_and_width(0.3, [](const RowKernels& kernels, int w, Image<float>& z) {
+    Floats carried(w, 99.0F), expected_carried(w, 99.0F), filled(w), expected(w);
+    Bytes missing(w), expected_missing(w);
+    for (int y = 0; y < 5; ++y) {
+      bool any = false;
+      for (int x = 0; x < w; ++x) {
+        expected_missing[x] = std::isnan(z(x, y)) ? 1 : 0;
+        any |= expected_missing[x] != 0;
+        if (expected_missing[x] == 0) expected_carried[x] = z(x, y);
+        expected[x] = expected_carried[x];
+      }
+      ASSERT_EQ(
+          kernels.carry_down(z.view().row(y), w, carried.data(), filled.data(), missing.data()),
+          any);
+      expect_same_bits(filled, expected);
+      expect_same_bits(carried, expected_carried);
+      ASSERT_EQ(missing, expected_missing);
+      ASSERT_EQ(
+          kernels.carry_down(z.view().row(y), w, carried.data(), z.view().row(y), missing.data()),
+          any);
+      expect_same_bits(Floats(z.view().row(y), z.view().row(y) + w), expected);  // in place
+
+      Floats up(w, 7.0F), expected_up(w, 7.0F);
+      kernels.carry_up(missing.data(), filled.data(), w, up.data());
+      for (int x = 0; x < w; ++x) {
+        if (missing[x] == 0) expected_up[x] = filled[x];
+      }
+      expect_same_bits(up, expected_up);
+    }
+  });
+}
+
+TEST(RowKernels, SlopesAndNormalsAreThoseOfThePlainSums) {
+  for_each_path_and_width(0.02, [](const RowKernels& kernels, int w, Image<float>& z) {
+    Floats sx(w), sy(w), ex(w), ey(w);
+    kernels.sobel(three_rows(z.view(), 2), w, sx.data(), sy.data());
+    for (int x = 0; x < w; ++x) {
+      const auto at = [&](int dx, int dy) { return z(std::clamp(x + dx, 0, w - 1), 2 + dy); };
+      const auto sum = [](float a, float b, float c) { return a + 2.0F * b + c; };
+      const float nan = 0.0F * (at(0, 0) + at(-1, 0) + at(1, 0) + at(0, -1) + at(0, 1) +
+                                at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1));
+      ex[x] =
+          0.125F * (sum(at(1, -1), at(1, 0), at(1, 1)) - sum(at(-1, -1), at(-1, 0), at(-1, 1))) +
+          nan;
+      ey[x] =
+          0.125F * (sum(at(-1, 1), at(0, 1), at(1, 1)) - sum(at(-1, -1), at(0, -1), at(1, -1))) +
+          nan;
+    }
+    for (int x = 0; x < w; ++x) ex[x] += 0.0F, ey[x] += 0.0F;
+    expect_same_bits(sx, ex);
+    expect_same_bits(sy, ey);
+    kernels.normalise(0.5F, 2.0F, w, sx.data(), sy.data());
+    for (int x = 0; x < w; ++x) {
+      const float a = ex[x] * 0.5F, b = ey[x] * 2.0F;
+      const float length = std::sqrt(1.0F + a * a + b * b);
+      ex[x] = -a / length, ey[x] = -b / length;
+    }
+    expect_same_bits(sx, ex);
+    expect_same_bits(sy, ey);
+  });
+}
+
+TEST(RowKernels, MarkWhereTheSlopeStandsOut) {
+  int marked_count = 0;
+  for_each_path_and_width(0.0, [&](const RowKernels& kernels, int w, Image<float>& s) {
+    if (w < 3) return;
+    Bytes marks(w, 9);
+    const ThreeRows rows{s.view().row(0), s.view().row(2), s.view().row(4)};
+    kernels.mark_jumps(s.view().row(3), rows, w, 9.0F, marks.data());
+    const auto agreed = [](float a, float b) {
+      if (!(a * b > 0.0F)) return 0.0F;
+      return std::fabs(a) < std::fabs(b) ? a : b;
+    };
+    for (int x = 0; x < w; ++x) {
+      const auto at = [&](int column) { return s(std::clamp(column, 1, w - 2), 3); };
+      const float rest_x = at(x) - agreed(at(x - kBeside_px), at(x + kBeside_px));
+      const float rest_y = s(x, 2) - agreed(s(x, 0), s(x, 4));
+      const bool marked = x > 0 && x < w - 1 && rest_x * rest_x + rest_y * rest_y >= 81.0F;
+      ASSERT_EQ(marks[x], marked ? kMaybeJump : 0) << x << " of " << w;
+      marked_count += marked ? 1 : 0;
+    }
+  });
+  EXPECT_GT(marked_count, 500);
+}
+
+TEST(RowKernels, DropWhatIsStillWeak) {
+  for_each_path_and_width(0.0, [](const RowKernels& kernels, int w, Image<float>&) {
+    Bytes marks(w), expected(w);
+    for (int x = 0; x < w; ++x) {
+      marks[x] = static_cast<std::uint8_t>(x % 3 == 0 ? kWeakMark | (x % 4) : x % 4);
+      expected[x] = static_cast<std::uint8_t>(x % 3 == 0 ? 0 : x % 4);
+    }
+    kernels.drop_weak(w, marks.data());
+    ASSERT_EQ(marks, expected);
+  });
+}
+
+}  // namespace
+}  // namespace flatpose::image
