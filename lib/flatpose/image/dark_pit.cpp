@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "flatpose/image/glance.hpp"
 #include "flatpose/image/lost_points.hpp"
 
 namespace flatpose::image {
@@ -22,7 +23,7 @@ constexpr std::uint8_t kShadowRising = 4;
 
 struct DarkPitScratch {
   ImageView<std::uint8_t> marks;
-  std::span<std::int32_t> run_px;  // by column: missing cells above, then sides of squares
+  std::span<std::int32_t> side_px;  // by column: of the largest square of pits that ends there
 };
 
 DarkPitScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
@@ -47,52 +48,42 @@ void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const floa
     const float* z_mm = filled_mm.row(y);
     std::uint8_t* mark = marks.row(y);
     std::fill_n(mark, missing.width_px, std::uint8_t{0});
-    for (int x = 1; x < missing.width_px; ++x) {
-      if (row[x] == 0 || row[x - 1] != 0) continue;
-      int end = x + 1;
-      while (end < missing.width_px && row[end] != 0) ++end;
-      const bool firm =
-          is_firm(row + x - 1, -1, x) && is_firm(row + end, 1, missing.width_px - end);
-      if (firm && end - x >= side_min_px) {
-        const float highest_mm = std::max(z_mm[x - 1], z_mm[end]);
-        for (int i = x; i < end; ++i) mark[i] = highest_mm - z_mm[i] <= level_mm ? kLevelRow : 0;
+    for_each_run(row, missing.width_px, [&](int begin, int end) {
+      if (end - begin < side_min_px || begin == 0 || !is_firm(row + begin - 1, -1, begin) ||
+          !is_firm(row + end, 1, missing.width_px - end)) {
+        return;
       }
-      x = end;
-    }
+      const float highest_mm = std::max(z_mm[begin - 1], z_mm[end]);
+      for (int i = begin; i < end; ++i) mark[i] = highest_mm - z_mm[i] <= level_mm ? kLevelRow : 0;
+    });
   }
 }
 
-// A run of a column has ended above row `end`: what lies in it may be a pit where rows and columns
-// agree.
-void mark_level_run(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
-                    float level_mm, int x, int begin, int end,
-                    ImageView<std::uint8_t> marks) noexcept {
-  if (begin == 0 || !is_firm(missing.row(begin - 1) + x, -missing.stride_px, begin) ||
-      !is_firm(missing.row(end) + x, missing.stride_px, missing.height_px - end)) {
-    return;
-  }
-  const float highest_mm = std::max(filled_mm(x, begin - 1), filled_mm(x, end));
-  for (int y = begin; y < end; ++y) {
-    if (marks(x, y) != 0 && highest_mm - filled_mm(x, y) <= level_mm) marks(x, y) = kPit;
-  }
+// Whether a run of missing cells of a column has firm ends.
+bool is_firm_run(ImageView<const std::uint8_t> missing, int x, int begin, int end) noexcept {
+  return begin > 0 && is_firm(missing.row(begin - 1) + x, -missing.stride_px, begin) &&
+         is_firm(missing.row(end) + x, missing.stride_px, missing.height_px - end);
 }
 
-void mark_level_columns(const DarkPitScratch& s, ImageView<const std::uint8_t> missing,
-                        ImageView<const float> filled_mm, int side_min_px,
-                        float level_mm) noexcept {
-  std::fill(s.run_px.begin(), s.run_px.end(), 0);
+// Where rows and columns agree there may be a pit. Each run of a column is judged once, from the
+// first of its cells that is marked.
+void mark_level_columns(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
+                        int side_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
   for (int y = 0; y < missing.height_px; ++y) {
-    const std::uint8_t* row = missing.row(y);
-    for (int x = 0; x < missing.width_px; ++x) {
-      std::int32_t& run_px = s.run_px[x];
-      if (row[x] != 0) {
-        ++run_px;
-        continue;
+    for_each_set(marks.row(y), missing.width_px, [&](int x) {
+      if (marks(x, y) != kLevelRow) return;
+      int begin = y;
+      while (begin > 0 && missing(x, begin - 1) != 0) --begin;
+      int end = y + 1;
+      while (end < missing.height_px && missing(x, end) != 0) ++end;
+      const bool counts = end - begin >= side_min_px && end < missing.height_px &&
+                          is_firm_run(missing, x, begin, end);
+      const float highest_mm = counts ? std::max(filled_mm(x, begin - 1), filled_mm(x, end)) : 0.0F;
+      for (int i = y; i < end; ++i) {
+        if (marks(x, i) != kLevelRow) continue;
+        marks(x, i) = counts && highest_mm - filled_mm(x, i) <= level_mm ? kPit : std::uint8_t{0};
       }
-      if (run_px >= side_min_px)
-        mark_level_run(missing, filled_mm, level_mm, x, y - run_px, y, s.marks);
-      run_px = 0;
-    }
+    });
   }
 }
 
@@ -112,16 +103,15 @@ void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float>
     return missing.contains(x, y) ? filled_mm(x, y) : -std::numeric_limits<float>::infinity();
   };
   for (int y = 0; y < missing.height_px; ++y) {
-    if (!has_pits(marks, y)) continue;
-    for (int x = 0; x < missing.width_px; ++x) {
-      if (marks(x, y) != kPit) continue;
+    for_each_set(marks.row(y), missing.width_px, [&](int x) {
+      if (marks(x, y) != kPit) return;
       const auto mark = [&](int i) -> std::uint8_t& { return marks(x + i * dx, y + i); };
       int before = -1;
       while (is_missing(x + before * dx, y + before) && mark(before) != kPit &&
              mark(before) != shadow) {
         --before;
       }
-      if (is_missing(x + before * dx, y + before)) continue;
+      if (is_missing(x + before * dx, y + before)) return;
       int end = 1;
       while (is_missing(x + end * dx, y + end)) ++end;
       const float highest_mm =
@@ -130,7 +120,7 @@ void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float>
         if (mark(i) == kPit && highest_mm - filled_mm(x + i * dx, y + i) > level_mm)
           mark(i) = shadow;
       }
-    }
+    });
   }
 }
 
@@ -147,7 +137,7 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
       }
     }
   };
-  std::fill(s.run_px.begin(), s.run_px.end(), 0);
+  std::fill(s.side_px.begin(), s.side_px.end(), 0);
   bool above_is_empty = true;
   for (int y = 0; y < missing.height_px; ++y) {
     const bool is_empty = !has_pits(s.marks, y);
@@ -156,9 +146,9 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
     std::int32_t left_px = 0;
     std::int32_t between_px = 0;
     for (int x = 0; x < missing.width_px; ++x) {
-      const std::int32_t above_px = s.run_px[x];
+      const std::int32_t above_px = s.side_px[x];
       left_px = s.marks(x, y) == kPit ? 1 + std::min({left_px, between_px, above_px}) : 0;
-      s.run_px[x] = left_px;
+      s.side_px[x] = left_px;
       between_px = above_px;
       if (left_px >= side_min_px) lower(x, y);
     }
@@ -183,7 +173,7 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
 
   const int side_min_px = accidental_side_px(missing, kSideMin_px);
   mark_level_rows(missing, filled_mm, side_min_px, config.level_mm, s.marks);
-  mark_level_columns(s, missing, filled_mm, side_min_px, config.level_mm);
+  mark_level_columns(missing, filled_mm, side_min_px, config.level_mm, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
   lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm);
