@@ -10,7 +10,7 @@
 #ifndef FLATPOSE_LANES
 #define FLATPOSE_LANES 4
 #endif
-#if FLATPOSE_LANES > 4
+#if FLATPOSE_LANES > 4 || defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
@@ -70,13 +70,35 @@ inline Floats gather(const float* base, Ints index) noexcept {
   return Floats{base[index[0]], base[index[1]], base[index[2]], base[index[3]]};
 #endif
 }
-inline bool any(Ints mask) noexcept {
-  std::uint64_t words[FLATPOSE_LANES / 2];
-  std::memcpy(words, &mask, sizeof mask);
-  std::uint64_t bits = 0;
-  for (const std::uint64_t word : words) bits |= word;
-  return bits != 0;
+inline Ints gather(const std::int32_t* base, Ints index) noexcept {
+#if FLATPOSE_LANES == 16
+  return reinterpret_cast<Ints>(_mm512_mask_i32gather_epi32(
+      __m512i{}, 0xFFFF, reinterpret_cast<__m512i>(index), base, sizeof(std::int32_t)));
+#elif FLATPOSE_LANES == 8
+  return reinterpret_cast<Ints>(
+      _mm256_i32gather_epi32(base, reinterpret_cast<__m256i>(index), sizeof(std::int32_t)));
+#else
+  return Ints{base[index[0]], base[index[1]], base[index[2]], base[index[3]]};
+#endif
 }
+/// A mask with a bit for each lane.
+inline unsigned bits(Ints mask) noexcept {
+#if FLATPOSE_LANES == 16
+  return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask));
+#elif FLATPOSE_LANES == 8
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  return (mask[0] & 1U) | (mask[1] & 2U) | (mask[2] & 4U) | (mask[3] & 8U);
+#endif
+}
+/// Calls body(lane) for each bit, from the lowest on.
+template <class Body>
+inline void for_each_bit(unsigned set, const Body& body) noexcept {
+  for (; set != 0; set &= set - 1) body(__builtin_ctz(set));
+}
+inline bool any(Ints mask) noexcept { return bits(mask) != 0; }
 inline bool all(Ints mask) noexcept { return !any(~mask); }
 
 }  // namespace

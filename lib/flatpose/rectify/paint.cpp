@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "flatpose/rectify/row_kernels.hpp"
@@ -37,34 +38,39 @@ constexpr std::array<std::uint8_t, 64> kTrianglesOf = [] {
   return table;
 }();
 
-/// Two rows of the scan and what goes with them.
-struct Strip {
+/// Two rows of the scan, and the quads between them that take more than a glance.
+struct Scratch {
   ScanRow above, below;
-  std::int32_t source_index;  // of the first pixel above
-  int width_px;
+  std::span<std::int32_t> lists;
 
-  [[nodiscard]] QuadBlock block(int first, int count) const noexcept {
-    return {above.u.data() + first,
-            above.v.data() + first,
-            above.z_mm.data() + first,
-            below.u.data() + first,
-            below.v.data() + first,
-            below.z_mm.data() + first,
-            count};
+  Scratch(Arena& arena, int width_px) noexcept
+      : above(ScanRow::take(arena, width_px)),
+        below(ScanRow::take(arena, width_px)),
+        lists(arena.take<std::int32_t>(4 * list_size(width_px))) {}
+
+  static std::size_t list_size(int width_px) noexcept {
+    return static_cast<std::size_t>(width_px) + kRowPadding;
   }
-  [[nodiscard]] Corner corner_above(int i) const noexcept {
-    return {above.u[i], above.v[i], above.z_mm[i], source_index + i};
-  }
-  [[nodiscard]] Corner corner_below(int i) const noexcept {
-    return {below.u[i], below.v[i], below.z_mm[i], source_index + width_px + i};
+  [[nodiscard]] QuadList list(int which) const noexcept {
+    const std::size_t size = lists.size() / 4;
+    std::int32_t* const first = lists.data() + 2 * static_cast<std::size_t>(which) * size;
+    return {first, first + size, 0};
   }
 };
 
 /// Paints quad i, whose edges hold as given, one triangle after the other.
-void paint_triangles(const Strip& strip, int i, std::int32_t edges, const HeightMap& out) noexcept {
+void paint_triangles(const QuadStrip& s, int i, std::int32_t edges, const HeightMap& out) noexcept {
   const unsigned triangles = kTrianglesOf[static_cast<unsigned>(edges)];
-  const Corner a = strip.corner_above(i), b = strip.corner_above(i + 1);
-  const Corner c = strip.corner_below(i + 1), d = strip.corner_below(i);
+  const std::int32_t source = s.source_index + i * s.source_right;
+  const auto above = [&](int k, std::int32_t index) {
+    return Corner{s.u_above[k], s.v_above[k], s.z_above_mm[k], index};
+  };
+  const auto below = [&](int k, std::int32_t index) {
+    return Corner{s.u_below[k], s.v_below[k], s.z_below_mm[k], index};
+  };
+  const Corner a = above(i, source), b = above(i + 1, source + s.source_right);
+  const Corner c = below(i + 1, source + s.source_right + s.source_down);
+  const Corner d = below(i, source + s.source_down);
   if (triangles == (kAbc | kAcd)) return paint_quad(out, a, b, c, d);
   if ((triangles & kAbc) != 0) paint_triangle(out, a, b, c);
   if ((triangles & kAcd) != 0) paint_triangle(out, a, c, d);
@@ -72,26 +78,14 @@ void paint_triangles(const Strip& strip, int i, std::int32_t edges, const Height
   if ((triangles & kBcd) != 0) paint_triangle(out, b, c, d);
 }
 
-void paint_strip(const RowKernels& kernels, const Strip& strip, const EdgeLimits& limits,
-                 const HeightMap& out) noexcept {
-  const std::int32_t source_of_corner[] = {0, 1, strip.width_px + 1, strip.width_px};
-  const int quad_count = strip.width_px - 1;
-  BlockFindings findings;
-  const HeightMap map = out;  // its address is nobody's: stores into its images do not change it
-  for (int first = 0; first < quad_count; first += kBlock) {
-    const int count = std::min(kBlock, quad_count - first);
-    const QuadBlock block = strip.block(first, count);
-    if (!kernels.covers_any(block)) continue;
-    kernels.find_cells(block, limits, out.grid, findings);
-    for (int i = 0; i < count; ++i) {
-      if (findings.finding[i] == Finding::kOneCell) {
-        put(map, findings.column[i], findings.row[i], findings.height_mm[i],
-            strip.source_index + first + i + source_of_corner[findings.nearest[i]]);
-      } else if (findings.finding[i] == Finding::kTriangles) {
-        paint_triangles(strip, first + i, findings.edges[i], out);
-      }
-    }
-  }
+void paint_strip(const RowKernels& kernels, const QuadStrip& strip, const EdgeLimits& limits,
+                 const Scratch& scratch, const HeightMap& out) noexcept {
+  const MapCells cells(out);
+  QuadList several = scratch.list(0);
+  QuadList rest = scratch.list(1);
+  kernels.paint_single_cells(strip, limits, cells, several);
+  kernels.paint_several_cells(strip, cells, several, rest);
+  for (int i = 0; i < rest.count; ++i) paint_triangles(strip, rest.quad[i], rest.edges[i], out);
 }
 
 }  // namespace
@@ -106,9 +100,7 @@ Status validate(const PaintConfig& config) noexcept {
 
 std::size_t paint_required_bytes(int scan_width_px) noexcept {
   Arena arena = Arena::measuring();
-  const int width_px = std::max(scan_width_px, 0);
-  (void)ScanRow::take(arena, width_px);
-  (void)ScanRow::take(arena, width_px);
+  (void)Scratch(arena, std::max(scan_width_px, 0));
   return arena.required_bytes();
 }
 
@@ -118,8 +110,7 @@ Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintCon
   if (const Status status = check_arguments(scan, work_T_scan, out); status != Status::kOk)
     return status;
   const ArenaScope scope(scratch);
-  Strip strip{ScanRow::take(scratch, scan.width_px), ScanRow::take(scratch, scan.width_px), 0,
-              scan.width_px};
+  Scratch s(scratch, scan.width_px);
   if (scratch.failed()) return Status::kOutOfMemory;
   clear(out);
   if (scan.size() == 0) return Status::kOk;
@@ -127,12 +118,15 @@ Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintCon
   const ScanToGrid to_grid(work_T_scan, out.grid);
   const EdgeLimits limits = edge_limits(config, out.grid.cell_mm);
   const RowKernels& kernels = row_kernels(config.vector_path);
-  kernels.transform_row(to_grid, scan, 0, strip.below);
+  kernels.transform_row(to_grid, scan, 0, s.below);
   for (int row = 1; row < scan.height_px; ++row) {
-    std::swap(strip.above, strip.below);
-    kernels.transform_row(to_grid, scan, row, strip.below);
-    strip.source_index = (row - 1) * scan.width_px;
-    paint_strip(kernels, strip, limits, out);
+    std::swap(s.above, s.below);
+    kernels.transform_row(to_grid, scan, row, s.below);
+    const QuadStrip strip{s.above.u.data(),  s.above.v.data(),          s.above.z_mm.data(),
+                          s.below.u.data(),  s.below.v.data(),          s.below.z_mm.data(),
+                          scan.width_px - 1, (row - 1) * scan.width_px, 1,
+                          scan.width_px};
+    paint_strip(kernels, strip, limits, s, out);
   }
   return Status::kOk;
 }

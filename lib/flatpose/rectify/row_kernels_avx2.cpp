@@ -2,5 +2,6 @@
 #include "flatpose/rectify/row_kernels.inc"
 
 namespace flatpose::rectify {
-const RowKernels kAvx2RowKernels = {transform_row, covers_any, find_cells};
+const RowKernels kAvx2RowKernels = {add_extent, transform_row, paint_single_cells,
+                                    paint_several_cells};
 }  // namespace flatpose::rectify

@@ -6,27 +6,13 @@
 #include <cstdint>
 #include <span>
 
-#include "flatpose/rectify/lanes.hpp"
+#include "flatpose/rectify/row_kernels.hpp"
 #include "flatpose/rectify/scan_row.hpp"
 
 namespace flatpose::rectify {
 namespace {
 
 // ---- the pass over all points ----
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Floats kMissing = std::numeric_limits<float>::quiet_NaN() + Floats{};
-
-/// Count and box, some points side by side.
-struct Extent {
-  std::array<Floats, 3> min_mm = {Floats{} + kInfinity, Floats{} + kInfinity, Floats{} + kInfinity};
-  std::array<Floats, 3> max_mm = {Floats{} - kInfinity, Floats{} - kInfinity, Floats{} - kInfinity};
-  Ints valid_count{};
-  Ints wild{};  // set where a coordinate was infinite or giant
-};
-
-/// Three rows of rotation and translation. The box needs no more than float.
-using Affine = std::array<float, 12>;
 
 Affine affine_of(const Pose& pose) noexcept {
   Affine affine{};
@@ -38,54 +24,15 @@ Affine affine_of(const Pose& pose) noexcept {
   return affine;
 }
 
-/// Adds four points. A missing one fails every comparison: it makes all three coordinates NaN.
-void add(const Affine& m, Floats x, Floats y, Floats z, Extent& extent) noexcept {
-  constexpr auto kMax_mm = static_cast<float>(kCoordinateMax_mm);
-  extent.wild |= (absolute(x) > kMax_mm) | (absolute(y) > kMax_mm) | (absolute(z) > kMax_mm);
-  extent.valid_count -= (x == x) & (y == y) & (z == z);  // true is -1
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Floats w_mm = m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3];
-    extent.min_mm[k] = smaller(w_mm, extent.min_mm[k]);
-    extent.max_mm[k] = larger(w_mm, extent.max_mm[k]);
-  }
-}
-
-void add_row(const RangeImageView& scan, int row, const Affine& work_T_scan,
-             Extent& extent) noexcept {
-  constexpr auto kFloatBytes = static_cast<std::ptrdiff_t>(sizeof(float));
-  const std::ptrdiff_t stride = scan.pixel_stride_bytes / kFloatBytes;
-  const std::ptrdiff_t skip = row * (scan.row_stride_bytes / kFloatBytes);
-  const auto four = [stride](const float* p) {
-    return Floats{p[0], p[stride], p[2 * stride], p[3 * stride]};
-  };
-  Extent local = extent;  // in registers
-  int c = 0;
-  for (; c + kLanes <= scan.width_px; c += kLanes) {
-    const std::ptrdiff_t at = skip + c * stride;
-    add(work_T_scan, four(scan.x_mm + at), four(scan.y_mm + at), four(scan.z_mm + at), local);
-  }
-  for (; c < scan.width_px; ++c) {
-    const std::ptrdiff_t at = skip + c * stride;
-    Floats x = kMissing, y = kMissing, z = kMissing;
-    x[0] = scan.x_mm[at], y[0] = scan.y_mm[at], z[0] = scan.z_mm[at];
-    add(work_T_scan, x, y, z, local);
-  }
-  extent = local;
+Vec3 to_vec3(const std::array<float, 3>& p_mm) noexcept {
+  return {static_cast<double>(p_mm[0]), static_cast<double>(p_mm[1]), static_cast<double>(p_mm[2])};
 }
 
 void write_extent(const Extent& extent, Survey& out) noexcept {
-  for (int i = 0; i < kLanes; ++i) out.valid_count += extent.valid_count[i];
+  out.valid_count = extent.valid_count;
   if (out.valid_count == 0) return;
-  const auto low = [&](std::size_t k) {
-    const Floats& v = extent.min_mm[k];
-    return static_cast<double>(std::min({v[0], v[1], v[2], v[3]}));
-  };
-  const auto high = [&](std::size_t k) {
-    const Floats& v = extent.max_mm[k];
-    return static_cast<double>(std::max({v[0], v[1], v[2], v[3]}));
-  };
-  out.min_mm = {low(0), low(1), low(2)};
-  out.max_mm = {high(0), high(1), high(2)};
+  out.min_mm = to_vec3(extent.min_mm);
+  out.max_mm = to_vec3(extent.max_mm);
   out.missing_share = 1.0 - static_cast<double>(out.valid_count) / out.point_count;
 }
 
@@ -179,8 +126,8 @@ std::size_t survey_required_bytes() noexcept {
   return arena.required_bytes();
 }
 
-Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
-                      Arena& scratch) noexcept {
+Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratch,
+                      VectorPath path) noexcept {
   if (const Status status = check_scan(scan, work_T_scan); status != Status::kOk) return status;
   const ArenaScope scope(scratch);
   Samples samples(scratch);
@@ -190,8 +137,9 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
   if (result.point_count == 0) return result;
   const Affine affine = affine_of(work_T_scan);
   Extent extent;
-  for (int r = 0; r < scan.height_px; ++r) add_row(scan, r, affine, extent);
-  if (any(extent.wild)) return Status::kNotFinite;
+  const RowKernels& kernels = row_kernels(path);
+  for (int r = 0; r < scan.height_px; ++r) kernels.add_extent(scan, r, affine, extent);
+  if (extent.has_wild) return Status::kNotFinite;
   write_extent(extent, result);
   take_samples(scan, work_T_scan, samples);
   result.pitch_along_row_mm = samples.along_row.median();

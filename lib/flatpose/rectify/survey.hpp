@@ -14,6 +14,7 @@
 
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/result.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
@@ -40,7 +41,8 @@ struct Survey {
 /// Fails: kNotFinite (an infinite coordinate, or one beyond 1e6 mm; NaN is a missing point),
 /// kInvalidArgument, kTooLarge, kOutOfMemory.  Thread: reentrant.
 [[nodiscard]] Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
-                                    Arena& scratch) noexcept;
+                                    Arena& scratch,
+                                    VectorPath path = VectorPath::kPortable) noexcept;
 
 /// A box in x and y of the work frame; without bounds as it stands.
 struct Region {

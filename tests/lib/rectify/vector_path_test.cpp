@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "flatpose/rectify/paint.hpp"
+#include "flatpose/rectify/survey.hpp"
 #include "tests/lib/rectify/scan_fixture.hpp"
+#include "tests/lib/search/vector_paths.hpp"
 
 namespace flatpose::rectify {
 namespace {
@@ -65,6 +69,56 @@ TEST(RowKernels, EveryPathPaintsTheSameBits) {
     }
   }
   EXPECT_GT(seen_count, 10000);
+}
+
+TEST(RowKernels, EveryPathSurveysTheSameBits) {
+  std::mt19937 random(8);
+  for (int trial = 0; trial < 40; ++trial) {
+    const int width = 1 + static_cast<int>(random() % 90U);
+    const Pose scan_T_work = random_pose(random, 0.8);
+    Scan scan = rough_scan(random, width, 11, uniform(random, 0.3, 2.5), scan_T_work);
+    for (float& coordinate_mm : scan.xyz_mm) coordinate_mm = std::min(coordinate_mm, 1e5F);
+    for (float& coordinate_mm : scan.xyz_mm) coordinate_mm = std::max(coordinate_mm, -1e5F);
+    Vec3 low{1e9, 1e9, 1e9};
+    int valid_count = 0;
+    for (int i = 0; i < width * 11; ++i) {
+      const float* const p = &scan.xyz_mm[3U * static_cast<std::size_t>(i)];
+      if (std::isnan(p[0])) continue;
+      const Vec3 w = scan_T_work.inverse() * Vec3{p[0], p[1], p[2]};
+      low = {std::min(low.x, w.x), std::min(low.y, w.y), std::min(low.z, w.z)};
+      ++valid_count;
+    }
+    // Side by side, apart, and strided.
+    const RangeImageView triples = scan.view();
+    std::vector<float> planes[3];
+    for (std::size_t i = 0; i < scan.xyz_mm.size(); ++i) planes[i % 3].push_back(scan.xyz_mm[i]);
+    const RangeImageView apart{planes[0].data(), planes[1].data(), planes[2].data(), width, 11, 4,
+                               4L * width};
+    std::vector<float> wide(5 * planes[0].size());
+    for (std::size_t i = 0; i < scan.xyz_mm.size(); ++i) wide[i / 3 * 5 + i % 3] = scan.xyz_mm[i];
+    const RangeImageView strided{wide.data(), wide.data() + 1, wide.data() + 2, width, 11,
+                                 20,          20L * width};
+    Scratch scratch(survey_required_bytes());
+    const auto first = survey(triples, scan_T_work.inverse(), scratch.arena);
+    ASSERT_TRUE(first);
+    ASSERT_EQ(first->valid_count, valid_count);
+    if (valid_count > 0) {
+      ASSERT_NEAR(first->min_mm.x, low.x, 1e-6 * std::fabs(low.x) + 0.05);
+      ASSERT_NEAR(first->min_mm.z, low.z, 1e-6 * std::fabs(low.z) + 0.05);
+    }
+    for (const VectorPath path : vector_paths()) {
+      for (const RangeImageView& view : {triples, apart, strided}) {
+        const auto other = survey(view, scan_T_work.inverse(), scratch.arena, path);
+        ASSERT_TRUE(other);
+        ASSERT_EQ(other->valid_count, first->valid_count);
+        for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+          ASSERT_EQ(other->min_mm.*axis, first->min_mm.*axis);
+          ASSERT_EQ(other->max_mm.*axis, first->max_mm.*axis);
+        }
+        ASSERT_EQ(other->noise_sigma_mm, first->noise_sigma_mm);
+      }
+    }
+  }
 }
 
 }  // namespace
