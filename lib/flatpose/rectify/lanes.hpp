@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #ifndef FLATPOSE_LANES
 #define FLATPOSE_LANES 4
@@ -58,6 +59,12 @@ inline Floats square_root(Floats lanes) noexcept {
   return lanes;
 #endif
 }
+template <int... K>
+inline Ints counted(std::integer_sequence<int, K...>) noexcept {
+  return Ints{K...};
+}
+/// 0, 1, 2 ...
+inline Ints counted() noexcept { return counted(std::make_integer_sequence<int, kLanes>{}); }
 /// base[index] for each lane.
 inline Floats gather(const float* base, Ints index) noexcept {
 #if FLATPOSE_LANES == 16

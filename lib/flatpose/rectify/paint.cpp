@@ -88,12 +88,22 @@ void paint_strip(const RowKernels& kernels, const QuadStrip& strip, const EdgeLi
   for (int i = 0; i < rest.count; ++i) paint_triangles(strip, rest.quad[i], rest.edges[i], out);
 }
 
+/// Every step-th row and column.
+RangeImageView thinned(const RangeImageView& scan, int step_px) noexcept {
+  RangeImageView thin = scan;
+  thin.width_px = (scan.width_px + step_px - 1) / step_px;
+  thin.height_px = (scan.height_px + step_px - 1) / step_px;
+  thin.pixel_stride_bytes *= step_px;
+  thin.row_stride_bytes *= step_px;
+  return thin;
+}
+
 }  // namespace
 
 Status validate(const PaintConfig& config) noexcept {
   const auto within = [](double value) { return value >= 0.0 && value <= 1e6; };
   return within(config.jump_mm) && within(config.max_slope) && within(config.max_gap_mm) &&
-                 config.max_gap_mm > 0.0
+                 config.max_gap_mm > 0.0 && config.step_px >= 1 && config.step_px <= kStepMax_px
              ? Status::kOk
              : Status::kInvalidArgument;
 }
@@ -110,7 +120,8 @@ Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintCon
   if (const Status status = check_arguments(scan, work_T_scan, out); status != Status::kOk)
     return status;
   const ArenaScope scope(scratch);
-  Scratch s(scratch, scan.width_px);
+  const RangeImageView thin = thinned(scan, config.step_px);
+  Scratch s(scratch, thin.width_px);
   if (scratch.failed()) return Status::kOutOfMemory;
   clear(out);
   if (scan.size() == 0) return Status::kOk;
@@ -118,14 +129,15 @@ Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintCon
   const ScanToGrid to_grid(work_T_scan, out.grid);
   const EdgeLimits limits = edge_limits(config, out.grid.cell_mm);
   const RowKernels& kernels = row_kernels(config.vector_path);
-  kernels.transform_row(to_grid, scan, 0, s.below);
-  for (int row = 1; row < scan.height_px; ++row) {
+  kernels.transform_row(to_grid, thin, 0, s.below);
+  for (int row = 1; row < thin.height_px; ++row) {
     std::swap(s.above, s.below);
-    kernels.transform_row(to_grid, scan, row, s.below);
-    const QuadStrip strip{s.above.u.data(),  s.above.v.data(),          s.above.z_mm.data(),
-                          s.below.u.data(),  s.below.v.data(),          s.below.z_mm.data(),
-                          scan.width_px - 1, (row - 1) * scan.width_px, 1,
-                          scan.width_px};
+    kernels.transform_row(to_grid, thin, row, s.below);
+    const QuadStrip strip{s.above.u.data(),    s.above.v.data(),
+                          s.above.z_mm.data(), s.below.u.data(),
+                          s.below.v.data(),    s.below.z_mm.data(),
+                          thin.width_px - 1,   (row - 1) * config.step_px * scan.width_px,
+                          config.step_px,      config.step_px * scan.width_px};
     paint_strip(kernels, strip, limits, s, out);
   }
   return Status::kOk;

@@ -28,12 +28,17 @@
 
 namespace flatpose::rectify {
 
+inline constexpr int kStepMax_px = 64;
+
 struct PaintConfig {
   /// An edge of a triangle may step by jump_mm + max_slope * (its length in x and y). [0, 1e6].
   /// More bridges the side walls of low parts; less leaves holes where noise is high.
   double jump_mm = 1.0;
   double max_slope = 2.0;   ///< mm per mm, [0, 1e6].
   double max_gap_mm = 5.0;  ///< The longest edge in x and y, (0, 1e6]: some three pixel pitches.
+  /// Only every so many-th row and column of the scan is read, 1..kStepMax_px: where the scan is
+  /// finer than the map, more of them show nothing more.
+  int step_px = 1;
   VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
@@ -44,10 +49,10 @@ struct PaintConfig {
 [[nodiscard]] std::size_t paint_required_bytes(int scan_width_px) noexcept;
 
 /// Paints `scan` into `out`, whose grid and images the caller gives; they are cleared first.
-/// source_index is the pixel of the winning triangle's corner nearest to the cell's centre.
-/// Units/frames: heights are z of the work frame.  Cost: linear in pixels and cells painted.
-/// Memory: a few rows of scratch, given back.  Fails: kInvalidArgument, kNotFinite, kTooLarge,
-/// kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant.
+/// source_index is the pixel (of all, not of those read) of the winning triangle's corner nearest
+/// to the cell's centre. Units/frames: heights are z of the work frame.  Cost: linear in pixels and
+/// cells painted. Memory: a few rows of scratch, given back.  Fails: kInvalidArgument, kNotFinite,
+/// kTooLarge, kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant.
 [[nodiscard]] Status paint(const RangeImageView& scan, const Pose& work_T_scan,
                            const PaintConfig& config, Arena& scratch,
                            const HeightMap& out) noexcept;

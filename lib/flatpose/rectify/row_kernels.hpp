@@ -21,7 +21,7 @@ struct RowKernels {
   /// folded, are appended to `several`.
   void (*paint_single_cells)(const QuadStrip& strip, const EdgeLimits& limits,
                              const MapCells& cells, QuadList& several) noexcept;
-  /// Paints the first diagonal's triangles of those that hold up to two by two; the others are
+  /// Paints the first diagonal's triangles of those that hold up to three by three; the others are
   /// appended to `rest`.
   void (*paint_several_cells)(const QuadStrip& strip, const MapCells& cells,
                               const QuadList& several, QuadList& rest) noexcept;

@@ -1,6 +1,7 @@
 #include "flatpose/scene/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "flatpose/image/canny.hpp"
 #include "flatpose/image/dark_pit.hpp"
@@ -24,13 +25,18 @@ image::DarkPitConfig pit_config(const SceneConfig& config) noexcept {
           static_cast<float>(std::max(config.step_mm, 2.0 * level_mm))};
 }
 
-rectify::RectifyConfig rectify_config(const SceneConfig& config) noexcept {
+rectify::RectifyConfig rectify_config(const SceneConfig& config, double cell_mm) noexcept {
   // Steps that are contours are not bridged by a wall; noise and slopes are.
   constexpr double kPitchesPerGap = 3.5;
+  // What is left of a fine scan is still somewhat finer than the map.
+  constexpr double kCellsPerStep = 0.8;
   rectify::RectifyConfig rectified;
   rectified.method = config.method;
+  const double step_px = std::floor(kCellsPerStep * cell_mm / config.pitch_mm);
+  rectified.paint.step_px =
+      static_cast<int>(std::max(1.0, std::min(step_px, 1.0 * rectify::kStepMax_px)));
   rectified.paint.jump_mm = edge_threshold_mm(config);
-  rectified.paint.max_gap_mm = kPitchesPerGap * config.pitch_mm;
+  rectified.paint.max_gap_mm = kPitchesPerGap * rectified.paint.step_px * config.pitch_mm;
   rectified.paint.vector_path = config.vector_path;
   return rectified;
 }
@@ -68,8 +74,8 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
   scene.vector_path = config.vector_path;
-  if (const Status s =
-          rectify::rectify(scan, frames.work_T_scan, rectify_config(config), arena, scene.map);
+  if (const Status s = rectify::rectify(scan, frames.work_T_scan,
+                                        rectify_config(config, grid.cell_mm), arena, scene.map);
       s != Status::kOk) {
     return s;
   }

@@ -71,6 +71,44 @@ TEST(RowKernels, EveryPathPaintsTheSameBits) {
   EXPECT_GT(seen_count, 10000);
 }
 
+// As if the rows and columns between had never been scanned, but for the pixels' numbers.
+TEST(Paint, ReadsEverySoManyRowsAndColumns) {
+  std::mt19937 random(9);
+  for (int trial = 0; trial < 40; ++trial) {
+    const int step = 1 + trial % 5;
+    const int width = step + 1 + static_cast<int>(random() % 150U);
+    const int height = step + 1 + static_cast<int>(random() % 40U);
+    const Scan scan = rough_scan(random, width, height, 1.0 / step, looking_down(40.0));
+    Scan thin((width + step - 1) / step, (height + step - 1) / step);
+    for (int r = 0; r < thin.height_px; ++r) {
+      for (int c = 0; c < thin.width_px; ++c) thin.set(c, r, scan.view()(c * step, r * step));
+    }
+    const Grid grid{-2, -2, 1, 40, 30};
+    PaintConfig config{.jump_mm = 2, .max_slope = 1, .max_gap_mm = 4};
+    Scratch scratch(paint_required_bytes(width));
+    Map expected(grid);
+    ASSERT_EQ(paint(thin.view(), looking_down(40.0).inverse(), config, scratch.arena, expected.map),
+              Status::kOk);
+    config.step_px = step;
+    for (const VectorPath path : vector_paths()) {
+      config.vector_path = path;
+      Map map(grid);
+      ASSERT_EQ(paint(scan.view(), looking_down(40.0).inverse(), config, scratch.arena, map.map),
+                Status::kOk);
+      for (int row = 0; row < grid.height_px; ++row) {
+        for (int column = 0; column < grid.width_px; ++column) {
+          ASSERT_EQ(map.seen(column, row), expected.seen(column, row)) << trial;
+          const int of_thin = expected.source(column, row);
+          if (!map.seen(column, row)) continue;
+          ASSERT_EQ(map.height_mm(column, row), expected.height_mm(column, row));
+          ASSERT_EQ(map.source(column, row),
+                    of_thin / thin.width_px * step * width + of_thin % thin.width_px * step);
+        }
+      }
+    }
+  }
+}
+
 TEST(RowKernels, EveryPathSurveysTheSameBits) {
   std::mt19937 random(8);
   for (int trial = 0; trial < 40; ++trial) {
