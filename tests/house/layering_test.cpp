@@ -83,6 +83,8 @@ TEST(Layering, LibKnowsNoSystemNoHeapAndNoOtherLibraryButEigenInRefine) {
       EXPECT_TRUE(starts_with(include.file.string(), "lib/flatpose/refine/")) << include.file;
       continue;
     }
+    // The processor's own instructions, where the compiler's vectors have no word for them.
+    if (include.what == "immintrin.h" && include.file == "lib/flatpose/rectify/lanes.hpp") continue;
     EXPECT_NE(std::find(allowed.begin(), allowed.end(), include.what), allowed.end())
         << include.file << " includes <" << include.what << ">";
   }
