@@ -4,13 +4,15 @@
 // the same side only.
 //
 // The distance is the 3-4 chamfer distance of chamfer.hpp. Its two passes run along the rows, where
-// each cell waits for the one before; eight directions side by side wait together.
+// each cell waits for the one before; eight directions side by side wait together, and cells as
+// many as a vector holds in steps of one, two and four.
 
 #include <cstdint>
 #include <span>
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/image/edge.hpp"
 #include "flatpose/image/octant_image.hpp"
 
@@ -35,6 +37,7 @@ struct ChannelConfig {
 /// Cost: two passes, linear in cells plus edges.  Memory: none.
 /// Fails: kInvalidArgument (config, order of the edges).  Thread: reentrant.
 Status edge_distances(std::span<const EdgePoint> edges, const ChannelConfig& config,
-                      const OctantImage& distance_third_px) noexcept;
+                      const OctantImage& distance_third_px,
+                      VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

@@ -44,12 +44,19 @@ float lowest_of(ImageView<const float> image) noexcept {
   return *std::min_element(lowest.begin(), lowest.end());
 }
 
+/// Rows in which cells are left with nothing; half-open.
+struct RowRange {
+  int begin = 0;
+  int end = 0;
+};
+
 // What nothing valid is in line with takes the lowest height there is. False when there is none.
-bool take_floor(ImageView<const std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+bool take_floor(ImageView<const std::uint8_t> missing, RowRange rows,
+                ImageView<float> filled_mm) noexcept {
   const float lowest_mm = lowest_of(filled_mm);
   const bool found = lowest_mm < kNothing;
   const float floor_mm = found ? lowest_mm : 0.0F;
-  for (int y = 0; y < filled_mm.height_px; ++y) {
+  for (int y = rows.begin; y < rows.end; ++y) {
     for_each_set(missing.row(y), missing.width_px, [&](int x) {
       float& z = filled_mm.row(y)[x];
       z = z < kNothing ? z : floor_mm;
@@ -84,13 +91,14 @@ Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm
         kernels.carry_down(height_mm.row(y), w, carried.data(), filled_mm.row(y), missing.row(y));
   }
   if (!any_missing) return Status::kOk;
-  bool nothing_left = false;
+  RowRange left;
   std::fill(carried.begin(), carried.end(), kNothing);
   for (int y = h - 1; y >= 0; --y) {
-    nothing_left |= take_lowest(missing.row(y), w, carried.data(), filled_mm.row(y));
+    if (take_lowest(missing.row(y), w, carried.data(), filled_mm.row(y)))
+      left = {y, std::max(left.end, y + 1)};
     kernels.carry_up(missing.row(y), filled_mm.row(y), w, carried.data());
   }
-  const bool all_missing = nothing_left && !take_floor(missing, filled_mm);
+  const bool all_missing = left.end > 0 && !take_floor(missing, left, filled_mm);
   return all_missing ? Status::kTooFewPoints : Status::kOk;
 }
 

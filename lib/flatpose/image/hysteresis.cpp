@@ -24,7 +24,7 @@ class Flood {
     push(x, y);
     while (size_ > 0) {
       const std::int32_t cell = stack_[--size_];
-      visit_neighbours(cell % marks_.width_px, cell / marks_.width_px);
+      visit_neighbours(cell & 0xFFFF, cell >> 16U);
     }
   }
 
@@ -32,7 +32,7 @@ class Flood {
   void push(int x, int y) noexcept {
     assert(size_ < stack_.size());
     marks_(x, y) &= kKindBits;
-    stack_[size_++] = y * marks_.width_px + x;
+    stack_[size_++] = y << 16U | x;  // neither is beyond kEdgeMapSizeMax_px
   }
   void visit_neighbours(int x, int y) noexcept {
     const bool crease = is_crease(marks_(x, y));

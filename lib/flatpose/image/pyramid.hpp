@@ -5,6 +5,7 @@
 
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/rectify/height_map.hpp"
 
 namespace flatpose::image {
@@ -20,6 +21,7 @@ namespace flatpose::image {
 /// highest; NaN where none is valid. Shape: `coarse_mm` is halved(width) x halved(height).  Units:
 /// mm.  Cost: one pass, linear. Memory: none.  Fails: kShapeMismatch, kInvalidArgument (jump_mm < 0
 /// or NaN).  Thread: reentrant.
-Status halve(ImageView<const float> fine_mm, float jump_mm, ImageView<float> coarse_mm) noexcept;
+Status halve(ImageView<const float> fine_mm, float jump_mm, ImageView<float> coarse_mm,
+             VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

@@ -7,6 +7,7 @@
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/image/jump_batch.hpp"
+#include "flatpose/image/octant_image.hpp"
 
 namespace flatpose::image {
 
@@ -45,6 +46,15 @@ struct RowKernels {
                      std::uint8_t* marks) noexcept;
   /// Marks become kinds: those that are still weak become none.
   void (*drop_weak)(int width_px, std::uint8_t* marks) noexcept;
+
+  /// Makes one cell of two by two of two rows: the mean of those at most `jump_mm` below the
+  /// highest. An odd last cell is halved with itself.
+  void (*halve)(const float* top, const float* bottom, int width_px, float jump_mm,
+                float* out) noexcept;
+  /// Shorten the chamfer distances of a row by way of the finished row before it, which may be the
+  /// row itself, and of the cell to the left, or to the right.
+  void (*shorten_forward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
+  void (*shorten_backward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
 
   void (*test_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
   void (*measure_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;

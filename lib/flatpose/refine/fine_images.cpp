@@ -19,7 +19,8 @@ Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept
   images.height_mm = scene.map.height_mm;
   images.filled_mm = scene.filled_mm;
   images.missing = scene.missing;
-  if (const Status s = image::edge_distances(scene.edges, {}, images.edge_distance_third_px);
+  if (const Status s =
+          image::edge_distances(scene.edges, {}, images.edge_distance_third_px, scene.vector_path);
       s != Status::kOk)
     return s;
   return image::normal_map(scene.filled_mm, images.grid.cell_mm, images.normal_x, images.normal_y,

@@ -142,5 +142,77 @@ TEST(RowKernels, DropWhatIsStillWeak) {
   });
 }
 
+TEST(RowKernels, HalveAsOneCellAtATime) {
+  for_each_path_and_width(0.4, [](const RowKernels& kernels, int w, Image<float>& z) {
+    Floats halved((w + 1) / 2), expected(halved.size());
+    kernels.halve(z.view().row(0), z.view().row(1), w, 6.0F, halved.data());
+    for (int x = 0; x < w; x += 2) {
+      std::vector<float> valid;
+      for (const int c : {x, x + 1}) {
+        for (const int r : {0, 1}) {
+          if (c < w && !std::isnan(z(c, r))) valid.push_back(z(c, r));
+        }
+      }
+      if (valid.empty()) {
+        ASSERT_TRUE(std::isnan(halved[x / 2]));
+        continue;
+      }
+      const float top = *std::max_element(valid.begin(), valid.end());
+      double sum = 0.0;
+      int count = 0;
+      for (const float height : valid) {
+        if (height >= top - 6.0F) sum += static_cast<double>(height), ++count;
+      }
+      ASSERT_NEAR(halved[x / 2], sum / count, 1e-5);
+    }
+    row_kernels(VectorPath::kPortable)
+        .halve(z.view().row(0), z.view().row(1), w, 6.0F, expected.data());
+    expect_same_bits(halved, expected);
+  });
+}
+
+std::uint8_t plus(int a, int b) { return static_cast<std::uint8_t>(std::min(a + b, 255)); }
+
+/// One cell after the other, `step` being 1 or -1.
+void shorten_slowly(const std::vector<OctantCell>& previous, int step,
+                    std::vector<OctantCell>& row) {
+  const int w = static_cast<int>(row.size());
+  for (std::size_t k = 0; k < kOctantCount; ++k) {
+    std::uint8_t carried = 255;
+    for (int x = step > 0 ? 0 : w - 1; x >= 0 && x < w; x += step) {
+      const auto at = [&](int i) { return previous[std::clamp(i, 0, w - 1)].of[k]; };
+      const std::uint8_t above = std::min({plus(at(x - 1), 4), plus(at(x), 3), plus(at(x + 1), 4)});
+      carried = std::min({above, row[x].of[k], plus(carried, 3)});
+      row[x].of[k] = carried;
+    }
+  }
+}
+
+TEST(RowKernels, ShortenDistancesAsCellAfterCell) {
+  std::mt19937 generator(3);
+  for (const VectorPath path : vector_paths()) {
+    for (int w = 1; w <= kWidthMax_px; ++w) {
+      for (int round = 0; round < 4; ++round) {
+        std::vector<OctantCell> previous(w), row(w);
+        for (int x = 0; x < w; ++x) {
+          for (std::size_t k = 0; k < kOctantCount; ++k) {
+            // Far from everything for the most part, also as far as a byte reaches.
+            previous[x].of[k] = generator() % 5 == 0 ? static_cast<std::uint8_t>(generator()) : 240;
+            row[x].of[k] = generator() % 9 == 0 ? 0 : (round % 2 == 0 ? 240 : 255);
+          }
+        }
+        for (const int step : {1, -1}) {
+          std::vector<OctantCell> expected = row, got = row;
+          shorten_slowly(previous, step, expected);
+          const RowKernels& kernels = row_kernels(path);
+          (step > 0 ? kernels.shorten_forward : kernels.shorten_backward)(previous.data(), w,
+                                                                          got.data());
+          for (int x = 0; x < w; ++x) ASSERT_EQ(got[x].of, expected[x].of) << x << " of " << w;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flatpose::image
