@@ -31,9 +31,28 @@ Lattice make_lattice(int width_px, int height_px, int stride_px, int reach_px) n
   return lattice;
 }
 
+void fill_margins(int width_px, int height_px, const Lattice& lattice, std::uint8_t outside,
+                  std::uint8_t* phases) noexcept {
+  const int s = lattice.stride_px;
+  for (int phase = 0; phase < s * s; ++phase) {
+    std::uint8_t* from = phases + static_cast<std::size_t>(phase) * lattice.phase_bytes();
+    std::uint8_t* const end = from + lattice.phase_bytes();
+    const int columns = (width_px - phase % s + s - 1) / s;
+    const int rows = (height_px - phase / s + s - 1) / s;
+    // From the end of each row of cells to the next one's begin at once.
+    for (int row = 0; row < rows; ++row) {
+      std::uint8_t* const cells = phases + static_cast<std::size_t>(phase) * lattice.phase_bytes() +
+                                  lattice.byte_of(0, row);
+      std::fill(from, cells, outside);
+      from = cells + columns;
+    }
+    std::fill(from, end, outside);
+  }
+}
+
 void spread(ImageView<const std::uint8_t> image, const Lattice& lattice, std::uint8_t outside,
             std::uint8_t* phases) noexcept {
-  std::fill_n(phases, lattice.image_bytes(), outside);
+  fill_margins(image.width_px, image.height_px, lattice, outside, phases);
   const int s = lattice.stride_px;
   for (int y = 0; y < image.height_px; ++y) {
     const std::uint8_t* source = image.row(y);

@@ -53,6 +53,11 @@ struct Lattice {
 [[nodiscard]] Lattice make_lattice(int width_px, int height_px, int stride_px,
                                    int reach_px) noexcept;
 
+/// Writes `outside` to all of an image's phases that no cell fills.
+/// Memory: `phases` holds lattice.image_bytes().
+void fill_margins(int width_px, int height_px, const Lattice& lattice, std::uint8_t outside,
+                  std::uint8_t* phases) noexcept;
+
 /// Copies an image into its phases; what lies outside reads `outside`.
 /// Memory: `phases` holds lattice.image_bytes().
 void spread(ImageView<const std::uint8_t> image, const Lattice& lattice, std::uint8_t outside,

@@ -1,10 +1,12 @@
 #include "flatpose/search/search_images.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flatpose/image/direction_channels.hpp"
 #include "flatpose/image/fill.hpp"
+#include "flatpose/image/glance.hpp"
 #include "flatpose/image/normals.hpp"
 #include "flatpose/image/pyramid.hpp"
 
@@ -107,25 +109,58 @@ void forget_directions(const image::OctantImage& costs) noexcept {
   }
 }
 
+// Turns eight numbers of eight bytes over: byte k of number i becomes byte i of number k.
+void transpose(std::array<std::uint64_t, 8>& rows) noexcept {
+  const auto exchange = [&rows](std::size_t distance, std::uint64_t low) {
+    const auto shift = 8 * distance;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if ((i & distance) != 0) continue;
+      const std::uint64_t upper = rows[i], lower = rows[i + distance];
+      rows[i] = (upper & low) | (lower & low) << shift;
+      rows[i + distance] = (upper >> shift & low) | (lower & ~low);
+    }
+  };
+  exchange(4, 0x00000000FFFFFFFFU);
+  exchange(2, 0x0000FFFF0000FFFFU);
+  exchange(1, 0x00FF00FF00FF00FFU);
+}
+
+// The bytes of a row of one phase, for the images of the first `image_count` directions.
+void spread_row(const image::OctantCell* source, int stride, int count, int image_count,
+                std::size_t image_bytes, std::uint8_t* target) noexcept {
+  constexpr int kSome = 8;
+  int i = 0;
+  for (; i + kSome <= count; i += kSome) {
+    std::array<std::uint64_t, kSome> some{};
+    for (int n = 0; n < kSome; ++n)
+      some[static_cast<std::size_t>(n)] = image::eight_from(source[(i + n) * stride].of.data());
+    transpose(some);
+    for (int k = 0; k < image_count; ++k) {
+      image::write_eight(some[static_cast<std::size_t>(k)],
+                         target + static_cast<std::size_t>(k) * image_bytes + i);
+    }
+  }
+  for (; i < count; ++i) {
+    for (int k = 0; k < image_count; ++k)
+      target[static_cast<std::size_t>(k) * image_bytes + static_cast<std::size_t>(i)] =
+          source[i * stride].of[static_cast<std::size_t>(k)];
+  }
+}
+
 // As spread(), for the images of the first `image_count` directions.
 void spread_directions(const image::OctantImage& costs, int image_count,
                        const SearchImages& images) noexcept {
   const Lattice& lattice = images.lattice;
   const int s = lattice.stride_px;
-  const std::size_t image_bytes = lattice.image_bytes();
-  std::fill_n(image_at(images, 0), static_cast<std::size_t>(image_count) * image_bytes,
-              kEdgeCostUnknown);
+  for (int k = 0; k < image_count; ++k)
+    fill_margins(costs.cells.width_px, costs.cells.height_px, lattice, kEdgeCostUnknown,
+                 image_at(images, k));
   for (int y = 0; y < costs.cells.height_px; ++y) {
     for (int phase_x = 0; phase_x < s; ++phase_x) {
       const auto phase = static_cast<std::size_t>(y % s * s + phase_x);
-      const image::OctantCell* source = costs.cells.row(y) + phase_x;
-      std::uint8_t* target =
-          image_at(images, 0) + phase * lattice.phase_bytes() + lattice.byte_of(0, y / s);
-      const int count = (costs.cells.width_px - phase_x + s - 1) / s;
-      for (int i = 0; i < count; ++i) {
-        for (int k = 0; k < image_count; ++k)
-          target[static_cast<std::size_t>(k) * image_bytes + i] = source[i * s].of[k];
-      }
+      spread_row(costs.cells.row(y) + phase_x, s, (costs.cells.width_px - phase_x + s - 1) / s,
+                 image_count, lattice.image_bytes(),
+                 image_at(images, 0) + phase * lattice.phase_bytes() + lattice.byte_of(0, y / s));
     }
   }
 }
@@ -141,7 +176,8 @@ Status spread_edge_costs(const scene::Scene& scene, Arena& scratch,
   image::ChannelConfig config;
   config.edge_cells = 2;
   config.distance_max_third_px = kEdgeCostMax;
-  if (const Status s = image::edge_distances(scene.edges, config, costs); s != Status::kOk)
+  if (const Status s = image::edge_distances(scene.edges, config, costs, scene.vector_path);
+      s != Status::kOk)
     return s;
   if (!images.config.use_directions) forget_directions(costs);
   spread_directions(costs, images.config.use_directions ? image::kOctantCount : 1, images);
@@ -194,10 +230,11 @@ Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
   const auto missing =
       scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
-  const Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm);
-  return s == Status::kOk
-             ? image::fill_missing(images.filled_mm, images.filled_mm, missing, scratch)
-             : s;
+  const Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm,
+                                scene.vector_path);
+  return s == Status::kOk ? image::fill_missing(images.filled_mm, images.filled_mm, missing,
+                                                scratch, scene.vector_path)
+                          : s;
 }
 
 Status build_search_images(const scene::Scene& scene, const SearchImagesConfig& config,

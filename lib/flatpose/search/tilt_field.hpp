@@ -11,6 +11,7 @@
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::search {
 
@@ -32,9 +33,10 @@ void reserve_tilt_scratch(Arena& arena, int width_px) noexcept;
 /// Fits a plane around every cell of a filled height map whose column and row are multiples of
 /// `stride_px`; other cells of the field stay as they are.
 /// Shape: all images alike.  Cost: 8 (2r+1) multiply-adds a cell fitted.  Memory: of `scratch` some
-/// 6r + 8 rows of doubles.  Fails: kShapeMismatch, kInvalidArgument (radius outside
+/// 6r + 11 rows of doubles.  Fails: kShapeMismatch, kInvalidArgument (radius outside
 /// 1..kTiltWindowRadiusMax_px, stride below 1), kOutOfMemory.  Thread: reentrant.
 [[nodiscard]] Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
-                                    Arena& scratch, TiltField& field, int stride_px = 1) noexcept;
+                                    Arena& scratch, TiltField& field, int stride_px = 1,
+                                    VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::search

@@ -10,6 +10,7 @@
 
 #include "tests/lib/image/image.hpp"
 #include "tests/lib/search/memory.hpp"
+#include "tests/lib/search/vector_paths.hpp"
 
 namespace flatpose::search {
 namespace {
@@ -143,6 +144,32 @@ TEST(TiltField, OfAMapSmallerThanTheWindowIsAllNaN) {
     ASSERT_EQ(fit.status, Status::kOk);
     for (int y = 0; y < h; ++y) {
       for (int x = 0; x < w; ++x) EXPECT_TRUE(std::isnan(fit.field.rms_mm(x, y)));
+    }
+  }
+}
+
+TEST(TiltField, IsTheSameOnEveryPath) {
+  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  for (const auto& [w, h] : {std::pair{53, 31}, {8, 30}, {30, 8}}) {
+    const image::Image<float> map = image::random_image(w, h, 9);
+    for (const int stride_px : {1, 2, 3}) {
+      for (const int r : {1, 3, kTiltWindowRadiusMax_px}) {
+        const Fit portable(map, 0.7, r);
+        for (const VectorPath path : vector_paths()) {
+          Fit fit(map, 0.7, r);
+          ASSERT_EQ(
+              fit_tilt_field(map.view(), 0.7, r, fit.memory.arena, fit.field, stride_px, path),
+              Status::kOk);
+          for (std::size_t i = 0; i < 4; ++i) {
+            for (int y = 0; y < h; ++y) {
+              for (int x = 0; x < w; ++x) {
+                ASSERT_EQ(bits(images_of(fit.field)[i](x, y)),
+                          bits(images_of(portable.field)[i](x, y)));
+              }
+            }
+          }
+        }
+      }
     }
   }
 }
