@@ -1,0 +1,44 @@
+#pragma once
+// The sums of the grid search alone: every block of places through one form of the block loop, with
+// templates that were turned beforehand. Table 4.1 of Ingberg 2015 leaves pre-computations out, and
+// two forms of the loop can be compared only where nothing else runs.
+
+#include <array>
+#include <vector>
+
+#include "bench/speed/ground.hpp"
+#include "flatpose/search/block_search.hpp"
+
+namespace flatpose::bench {
+
+class BlockSums {
+ public:
+  explicit BlockSums(const Ground& ground);
+
+  /// Fills the best cost and angle of every place. The same bits for every exact form.
+  void run(search::SearchBlock form);
+
+  /// Over the costs of all places and sectors.
+  [[nodiscard]] std::uint64_t digest() const;
+  /// That a form of this vector width loads from the images if it never ends early.
+  [[nodiscard]] double loaded_bytes(int lane_count) const;
+
+ private:
+  struct Bin {
+    int begin = 0;  ///< Of its blocks.
+    int end = 0;
+    std::size_t first_angle = 0;
+    std::uint8_t cutoff = 0;
+  };
+  [[nodiscard]] std::size_t block_count() const;
+  void turn_template(int bin_index, Bin& bin);
+
+  const Ground& ground_;
+  int angle_count_;
+  std::vector<Bin> bins_;
+  std::vector<search::ShiftedTemplate> angles_;  // by bin
+  std::array<std::vector<std::uint8_t>, search::kSectorCount> best_cost_;
+  std::array<std::vector<std::uint8_t>, search::kSectorCount> best_angle_;
+};
+
+}  // namespace flatpose::bench

@@ -1,0 +1,5 @@
+#include "bench/speed/benches.hpp"
+
+namespace flatpose::bench {
+void register_growth_benches(const BenchOptions&) {}
+}  // namespace flatpose::bench

@@ -1,0 +1,19 @@
+#include "bench/speed/whole_sums.hpp"
+
+namespace flatpose::bench {
+
+#ifdef FLATPOSE_HAS_WHOLE_SUMS
+void whole_sums_portable(const search::BlockJob& job) noexcept;
+void whole_sums_avx2(const search::BlockJob& job) noexcept;
+void whole_sums_avx512(const search::BlockJob& job) noexcept;
+
+search::SearchBlock whole_sums_for(VectorPath path) noexcept {
+  if (path == VectorPath::kAvx2) return whole_sums_avx2;
+  if (path == VectorPath::kAvx512) return whole_sums_avx512;
+  return whole_sums_portable;
+}
+#else
+search::SearchBlock whole_sums_for(VectorPath) noexcept { return nullptr; }
+#endif
+
+}  // namespace flatpose::bench
