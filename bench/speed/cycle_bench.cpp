@@ -12,34 +12,10 @@
 #include "bench/speed/benches.hpp"
 #include "bench/speed/paths.hpp"
 #include "bench/speed/shots.hpp"
-#include "port/linux/clock/steady_clock.hpp"
+#include "bench/speed/station.hpp"
 
 namespace flatpose::bench {
 namespace {
-
-/// Keeps a locator's memory from scan to scan, as a daemon would.
-class Station {
- public:
-  locate::LocateResult locate(const Shot& shot, const model::Template& part, VectorPath path) {
-    locate::Limits limits = tool::limits_for(shot.loaded.scan);
-    limits.vector_path = path;
-    const std::size_t size_bytes = locate::Locator::required_bytes(limits);
-    if (!memory_ || memory_->size_bytes() < size_bytes)
-      memory_ = std::make_unique<tool::Memory>(size_bytes);
-    locate::Locator locator;
-    locate::LocateResult result;
-    Status status = locator.init(limits, memory_->span());
-    if (status == Status::kOk)
-      status = locator.locate(part, shot.loaded.scan.view(), shot.loaded.frames, {},
-                              port::SteadyClock{}, result);
-    if (status != Status::kOk)
-      throw std::runtime_error(std::string("locate: ") + to_string(status));
-    return result;
-  }
-
- private:
-  std::unique_ptr<tool::Memory> memory_;
-};
 
 /// The sum of all coordinates that are there.
 float plain_pass(const Shot& shot) {
@@ -75,7 +51,7 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
   const std::vector<Shot>& shots = shots_of(scene, part_in(scene), size, seed_count);
   const model::Template& part = taught(part_in(scene)).part;
   Station station;
-  benchmark::DoNotOptimize(station.locate(shots[0], part, vector_paths().back().path));  // warm
+  benchmark::DoNotOptimize(station.locate(shots[0], part, {}, vector_paths().back().path));  // warm
   Samples samples;
   for (auto _ : state) {
     for (int i = 0; i < seed_count; ++i) {
@@ -83,7 +59,7 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
       samples["pass_us"].push_back(plain_pass_us(shot));
       std::uint64_t first_digest = 0;
       for (const NamedPath& path : vector_paths()) {
-        const locate::LocateResult result = station.locate(shot, part, path.path);
+        const locate::LocateResult result = station.locate(shot, part, {}, path.path);
         note(result.timings, path.name, samples);
         const std::uint64_t digest = locate::digest(result);
         if (path.path == VectorPath::kPortable) first_digest = digest;
