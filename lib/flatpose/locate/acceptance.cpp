@@ -19,26 +19,32 @@ void Acceptance::note_rejected(double score) noexcept {
   result_.best_rejected_score = std::max(result_.best_rejected_score, score);
 }
 
-bool Acceptance::consider(const refine::PolishResult& polished) noexcept {
+Verdict Acceptance::consider(const refine::PolishResult& polished) noexcept {
   const Pose& pose = polished.work_T_object;
   const Verification v = verify(part_, fine_, claimed_, pose, settings_.verify);
   if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
     note_rival(v.score, pose);
-    return false;
+    return Verdict::kNoMatch;
   }
-  if (!may_match(polished, v)) {
+  const Verdict verdict = judge(polished, v);
+  if (verdict != Verdict::kMatch) {
     note_rejected(v.score);
-    return false;
+    return verdict;
   }
   result_.matches[result_.match_count++] = to_match(polished, v);
   claim(part_, fine_, pose, settings_.verify, claimed_);
-  return true;
+  return verdict;
 }
 
-bool Acceptance::may_match(const refine::PolishResult& polished,
-                           const Verification& v) const noexcept {
-  return v.score >= settings_.score_threshold && v.visible >= config_.min_visible &&
-         is_allowed(polished.work_T_object);
+Verdict Acceptance::judge(const refine::PolishResult& polished,
+                          const Verification& v) const noexcept {
+  // The confirmed contour may leave a direction open by this share of what the whole one holds.
+  constexpr double kHeldMin = 0.005;
+  if (v.score < settings_.score_threshold || v.visible < config_.min_visible ||
+      !is_allowed(polished.work_T_object)) {
+    return Verdict::kNoMatch;
+  }
+  return v.held >= kHeldMin && v.shows_face ? Verdict::kMatch : Verdict::kGuess;
 }
 
 // A second pose in the place of a match that is no equivalent of it.

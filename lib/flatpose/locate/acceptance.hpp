@@ -12,6 +12,13 @@
 
 namespace flatpose::locate {
 
+enum class Verdict {
+  kMatch,
+  kNoMatch,
+  /// It fits, but what is seen would be the same for the part slid along, or lying on its face.
+  kGuess,
+};
+
 /// Considers poses best first and writes matches, rivals and misses into a result.
 class Acceptance {
  public:
@@ -29,10 +36,10 @@ class Acceptance {
 
   /// Takes a polished pose as the next match, when it is one. A pose that is none may become one
   /// later, when parts that adjoin it have been accepted.
-  [[nodiscard]] bool consider(const refine::PolishResult& polished) noexcept;
-  /// Whether nothing but other matches keeps a pose from being one.
-  [[nodiscard]] bool may_match(const refine::PolishResult& polished,
-                               const Verification& v) const noexcept;
+  [[nodiscard]] Verdict consider(const refine::PolishResult& polished) noexcept;
+  /// What a pose would be if no match stood in its way.
+  [[nodiscard]] Verdict judge(const refine::PolishResult& polished,
+                              const Verification& v) const noexcept;
   /// Remembers how near a pose came that is no match.
   void note_rejected(double score) noexcept;
   /// Puts the matches in the order asked for.

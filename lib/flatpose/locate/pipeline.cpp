@@ -73,8 +73,6 @@ class Pipeline {
 
     const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
-    holes_ = model::find_holes(part_);
-    settings_.verify.holes = &holes_;
     settings_.search.vector_path = limits_.vector_path;
     settings_.scene.vector_path = limits_.vector_path;
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
@@ -197,8 +195,11 @@ class Pipeline {
 
   [[nodiscard]] bool is_beyond_doubt(const Instance& instance) const noexcept {
     constexpr double kShare = 0.95;
+    // One that is hardly visible enough does not end the search: a better one may lie in the open.
+    constexpr double kVisibleMargin = 0.05;
     return instance.is_polished && instance.verification.score >= kShare * part_.self_score &&
-           acceptance_.may_match(instance.polished, instance.verification);
+           instance.verification.visible >= config_.min_visible + kVisibleMargin &&
+           acceptance_.judge(instance.polished, instance.verification) == Verdict::kMatch;
   }
 
   // Whether as many as are asked for are beyond doubt, each in a place of its own: other anchors
@@ -295,11 +296,25 @@ class Pipeline {
     bool has_new = false;
     for (const int i : {best, index}) {
       Instance& instance = work_.instances[i];
-      if (!instance.is_open || !acceptance_.consider(instance.polished)) continue;
-      instance.is_open = false;
-      has_new = true;
+      if (!instance.is_open) continue;
+      const Verdict verdict = acceptance_.consider(instance.polished);
+      if (verdict == Verdict::kGuess) {
+        close_place_of(instance);
+        return has_new;
+      }
+      instance.is_open = verdict != Verdict::kMatch;
+      has_new |= verdict == Verdict::kMatch;
     }
     return has_new;
+  }
+
+  // Where the best that fits is a guess, what fits less is none the better.
+  void close_place_of(const Instance& guess) noexcept {
+    for (int i = 0; i < instance_count_; ++i) {
+      Instance& instance = work_.instances[i];
+      if (rank(instance.verification) <= rank(guess.verification) && is_same_place(instance, guess))
+        instance.is_open = false;
+    }
   }
 
   [[nodiscard]] bool is_same_place(const Instance& a, const Instance& b) const noexcept {
@@ -365,7 +380,6 @@ class Pipeline {
   Arena& arena_;
   LocateResult& result_;
   Settings settings_;
-  model::Holes holes_;
   scene::Scene scene_;
   Workspace work_;
   Acceptance acceptance_;

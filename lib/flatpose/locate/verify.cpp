@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "flatpose/image/dark_pit.hpp"
+#include "flatpose/locate/hold.hpp"
 
 namespace flatpose::locate {
 namespace {
@@ -192,16 +193,15 @@ double typical_spread_mm(const model::Template& part) noexcept {
   return static_cast<double>(*middle);
 }
 
-// Holes that can be seen and are not there. One such is enough: the worst decides.
-class HoleTally {
+// What tells the part from its look-alikes. Every hole that can be seen must be there: one that is
+// not is enough, so the worst decides. And something must be seen of what its own face alone shows.
+class LandmarkTally {
  public:
-  explicit HoleTally(const model::Holes* holes) noexcept : holes_(holes) {}
+  explicit LandmarkTally(const model::Landmarks& landmarks) noexcept : landmarks_(landmarks) {}
 
   void add(int point, double agreement) noexcept {
-    if (holes_ == nullptr || holes_->hole_of_point[point] >= holes_->count) return;
-    const std::uint8_t hole = holes_->hole_of_point[point];
-    ++seen_count_[hole];
-    agreement_sum_[hole] += agreement;
+    holes_[landmarks_.hole[point]].add(agreement);
+    if (landmarks_.is_telltale[point]) telltales_.add(agreement);
   }
 
   /// 1 when every hole seen is there, less when one is hardly there.
@@ -209,17 +209,37 @@ class HoleTally {
     constexpr double kSeenShare = 0.5;
     constexpr double kEnough = 0.65;
     double worst = 1.0;
-    for (int i = 0; holes_ != nullptr && i < holes_->count; ++i) {
-      if (seen_count_[i] < kSeenShare * holes_->point_count[i]) continue;
-      worst = std::min(worst, agreement_sum_[i] / seen_count_[i] / kEnough);
+    for (int i = 1; i <= landmarks_.hole_count; ++i) {
+      if (holes_[i].seen_count < kSeenShare * landmarks_.hole_point_count[i]) continue;
+      worst = std::min(worst, holes_[i].mean_agreement() / kEnough);
     }
     return worst;
   }
+  /// Whether the contour seen is the one of the part's own face; a part whose faces differ in
+  /// hardly a point shows it always.
+  [[nodiscard]] bool shows_face(int contour_count) const noexcept {
+    constexpr double kTelltaleShareMin = 0.02;
+    constexpr double kConfirmedMin = 1.5;
+    constexpr double kAgreementMin = 0.4;
+    if (landmarks_.telltale_count < kTelltaleShareMin * contour_count) return true;
+    return telltales_.agreement_sum >= kConfirmedMin &&
+           telltales_.mean_agreement() >= kAgreementMin;
+  }
 
  private:
-  const model::Holes* holes_;
-  std::array<int, model::kHoleCountMax> seen_count_{};
-  std::array<double, model::kHoleCountMax> agreement_sum_{};
+  struct Tally {
+    int seen_count = 0;
+    double agreement_sum = 0.0;
+    void add(double agreement) noexcept {
+      ++seen_count;
+      agreement_sum += agreement;
+    }
+    [[nodiscard]] double mean_agreement() const noexcept { return agreement_sum / seen_count; }
+  };
+
+  const model::Landmarks& landmarks_;
+  std::array<Tally, model::kHoleCountMax + 1> holes_{};
+  Tally telltales_;
 };
 
 }  // namespace
@@ -249,7 +269,8 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   const double typical_mm = typical_spread_mm(part);
   double visible_weight = 0.0;
   double confirmed_weight = 0.0;
-  HoleTally holes(config.holes);
+  LandmarkTally landmarks(part.landmarks);
+  Hold hold(part);
   for (int i = 0; i < part.contour_count; ++i) {
     const model::ContourPoint& p = part.contour[i];
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
@@ -268,11 +289,15 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     visible_weight += weight(p);
     if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
     confirmed_weight += verdict.agreement * weight(p);
-    holes.add(i, verdict.agreement);
+    landmarks.add(i, verdict.agreement);
+    hold.add(p, verdict.agreement);
   }
   out.visible = share(visible_area, area);
   out.score = surface_agreement(share(confirmed_area, visible_area), config.contradiction_weight) *
-              share(confirmed_weight, visible_weight) * holes.agreement();
+              share(confirmed_weight, visible_weight) *
+              (config.use_landmarks ? landmarks.agreement() : 1.0);
+  out.held = hold.least_share();
+  out.shows_face = landmarks.shows_face(part.contour_count);
   return out;
 }
 

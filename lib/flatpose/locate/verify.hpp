@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "flatpose/core/image_view.hpp"
-#include "flatpose/model/holes.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/refine/fine_images.hpp"
 
@@ -17,8 +16,7 @@ struct VerifyConfig {
   double height_tolerance_mm = 1.0;   ///< A single cell this near to its height may be there.
   double edge_tolerance_px =
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
-  /// The part's holes, each of which must show itself where it can be seen; null: not asked for.
-  const model::Holes* holes = nullptr;
+  bool use_landmarks = true;  ///< Every hole that can be seen must be there.
   /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.
   double contradiction_weight = 3.0;
 };
@@ -35,6 +33,8 @@ struct Verification {
   double visible = 0.0;  ///< Share of the surface that the scan could show.
   double score =
       0.0;  ///< Confirmed share of what could be seen, surface and contour weighing the same.
+  double held = 0.0;       ///< Share by which the confirmed contour holds the direction held worst.
+  bool shows_face = true;  ///< Whether what tells the part from itself on its face was seen.
 };
 
 /// Holds the dense template at a pose against the scan.

@@ -1,10 +1,10 @@
-#include "flatpose/model/holes.hpp"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "flatpose/core/maths.hpp"
+#include "flatpose/model/landmarks.hpp"
 
 namespace flatpose::model {
 namespace {
@@ -38,17 +38,15 @@ double link_mm(const Template& part) noexcept {
 
 class LoopFinder {
  public:
-  explicit LoopFinder(const Template& part) noexcept : part_(part), link_mm_(link_mm(part)) {
-    holes_.hole_of_point.fill(kNoHole);
-  }
+  LoopFinder(const Template& part, Landmarks& out) noexcept
+      : part_(part), link_mm_(link_mm(part)), out_(out) {}
 
-  Holes run() noexcept {
-    for (int i = 0; i < part_.contour_count && holes_.count < kHoleCountMax; ++i) {
+  void run() noexcept {
+    for (int i = 0; i < part_.contour_count && out_.hole_count < kHoleCountMax; ++i) {
       if (is_visited_[i]) continue;
       collect(i);
       if (is_hole()) keep();
     }
-    return holes_;
   }
 
  private:
@@ -93,14 +91,15 @@ class LoopFinder {
   }
 
   void keep() noexcept {
+    ++out_.hole_count;
     for (int k = 0; k < member_count_; ++k)
-      holes_.hole_of_point[members_[k]] = static_cast<std::uint8_t>(holes_.count);
-    holes_.point_count[holes_.count++] = member_count_;
+      out_.hole[members_[k]] = static_cast<std::uint8_t>(out_.hole_count);
+    out_.hole_point_count[out_.hole_count] = member_count_;
   }
 
   const Template& part_;
   double link_mm_;
-  Holes holes_;
+  Landmarks& out_;
   std::array<bool, kContourPointCountMax> is_visited_{};
   std::array<int, kContourPointCountMax> members_{};
   int member_count_ = 0;
@@ -108,6 +107,6 @@ class LoopFinder {
 
 }  // namespace
 
-Holes find_holes(const Template& part) noexcept { return LoopFinder(part).run(); }
+void find_holes(const Template& part, Landmarks& out) noexcept { LoopFinder(part, out).run(); }
 
 }  // namespace flatpose::model

@@ -75,6 +75,18 @@ enum Weakness : std::uint32_t {
   kWeakSymmetryDoubtful = 1U << 6,  ///< The declared turn does not lay the contour onto itself.
 };
 
+inline constexpr int kHoleCountMax = 16;
+
+/// What tells the part from its look-alikes, read off its contour: see landmarks.hpp.
+struct Landmarks {
+  std::array<std::uint8_t, kContourPointCountMax> hole{};  ///< Of a point: 0 none, else 1, 2, ..
+  std::array<int, kHoleCountMax + 1> hole_point_count{};
+  int hole_count = 0;
+  /// Whether the part lying on its face has no such contour in this place.
+  std::array<bool, kContourPointCountMax> is_telltale{};
+  int telltale_count = 0;
+};
+
 struct Template {
   std::array<char, kNameBytesMax + 1> name{};  ///< UTF-8, zero-terminated.
   Symmetry symmetry;
@@ -99,6 +111,7 @@ struct Template {
   std::array<ContourPoint, kContourPointCountMax> contour{};
   std::array<SurfacePoint, kSurfacePointCountMax> surface{};
   std::array<Anchor, kAnchorCountMax> anchors{};
+  Landmarks landmarks;  ///< Follows from the contour; no part of the file.
 
   [[nodiscard]] std::span<const ContourPoint> contour_points() const noexcept {
     return {contour.data(), static_cast<std::size_t>(contour_count)};

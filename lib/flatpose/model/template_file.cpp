@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "flatpose/core/fnv.hpp"
+#include "flatpose/model/landmarks.hpp"
 
 namespace flatpose::model {
 namespace {
@@ -251,6 +252,7 @@ Status read_template(std::span<const std::byte> bytes, Template& part) noexcept 
   visit(reader, read);
   if (reader.failed()) return Status::kTruncated;
   if (reader.position() != payload.size() || !is_valid(read)) return Status::kInvalidArgument;
+  read.landmarks = find_landmarks(read);
   part = read;
   return Status::kOk;
 }

@@ -5,6 +5,7 @@
 
 #include "flatpose/image/canny.hpp"
 #include "flatpose/image/fill.hpp"
+#include "flatpose/model/landmarks.hpp"
 #include "flatpose/rectify/survey.hpp"
 #include "flatpose/teach/assess.hpp"
 #include "flatpose/teach/clouds.hpp"
@@ -84,6 +85,7 @@ class Lesson {
     snap_anchor(samples.stride_mm);
     measure_extent();
     part_.scan_T_object = source.frames.face_T_work * work_T_object_;
+    part_.landmarks = model::find_landmarks(part_);
     return Status::kOk;
   }
 
@@ -274,6 +276,7 @@ class Lesson {
       ++report_.scan_count_used;
     }
     (void)mean_.apply(part_);
+    part_.landmarks = model::find_landmarks(part_);
     return Status::kOk;
   }
 
