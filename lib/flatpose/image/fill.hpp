@@ -19,7 +19,7 @@ void reserve_fill_scratch(Arena& arena, int width_px) noexcept;
 /// Writes a map without missing cells, and 1 in `missing` where a cell was filled, else 0. A cell
 /// with nothing valid in any of the four directions takes the lowest height of the whole map.
 /// Shape: all alike; `filled_mm` may be `height_mm` itself.  Units: mm.
-/// Cost: two passes, linear in cells.  Memory: one row of `scratch`, given back.
+/// Cost: two passes, linear in cells.  Memory: two rows of `scratch`, given back.
 /// Fails: kShapeMismatch, kOutOfMemory; kTooFewPoints when nothing is valid: all cells are then 0
 /// and missing.  Thread: reentrant.
 Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm,

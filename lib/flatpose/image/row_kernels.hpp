@@ -29,10 +29,11 @@ struct ThreeRows {
 }
 
 struct RowKernels {
-  /// Marks what is missing of a row; such cells take what is carried, all others are carried on.
-  /// `filled_mm` may be `height_mm`. Returns whether any was missing.
-  bool (*carry_down)(const float* height_mm, int width_px, float* carried, float* filled_mm,
-                     std::uint8_t* missing) noexcept;
+  /// Marks what is missing of a row; such cells take what is carried, all others are carried on
+  /// and lower what is the lowest of their columns. `filled_mm` may be `height_mm`. Returns whether
+  /// any was missing.
+  bool (*carry_down)(const float* height_mm, int width_px, float* carried, float* lowest_mm,
+                     float* filled_mm, std::uint8_t* missing) noexcept;
   /// What is not missing is carried on.
   void (*carry_up)(const std::uint8_t* missing, const float* filled_mm, int width_px,
                    float* carried) noexcept;

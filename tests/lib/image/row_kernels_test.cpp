@@ -47,6 +47,7 @@ using Bytes = std::vector<std::uint8_t>;
 TEST(RowKernels, CarryWhatIsThereToWhatIsMissing) {
   for_each_path_and_width(0.3, [](const RowKernels& kernels, int w, Image<float>& z) {
     Floats carried(w, 99.0F), expected_carried(w, 99.0F), filled(w), expected(w);
+    Floats lowest(w, 50.0F), expected_lowest(w, 50.0F);
     Bytes missing(w), expected_missing(w);
     for (int y = 0; y < 5; ++y) {
       bool any = false;
@@ -55,16 +56,18 @@ TEST(RowKernels, CarryWhatIsThereToWhatIsMissing) {
         any |= expected_missing[x] != 0;
         if (expected_missing[x] == 0) expected_carried[x] = z(x, y);
         expected[x] = expected_carried[x];
+        expected_lowest[x] = std::min(expected_lowest[x], expected[x]);
       }
-      ASSERT_EQ(
-          kernels.carry_down(z.view().row(y), w, carried.data(), filled.data(), missing.data()),
-          any);
+      ASSERT_EQ(kernels.carry_down(z.view().row(y), w, carried.data(), lowest.data(), filled.data(),
+                                   missing.data()),
+                any);
       expect_same_bits(filled, expected);
       expect_same_bits(carried, expected_carried);
+      expect_same_bits(lowest, expected_lowest);
       ASSERT_EQ(missing, expected_missing);
-      ASSERT_EQ(
-          kernels.carry_down(z.view().row(y), w, carried.data(), z.view().row(y), missing.data()),
-          any);
+      ASSERT_EQ(kernels.carry_down(z.view().row(y), w, carried.data(), lowest.data(),
+                                   z.view().row(y), missing.data()),
+                any);
       expect_same_bits(Floats(z.view().row(y), z.view().row(y) + w), expected);  // in place
 
       Floats up(w, 7.0F), expected_up(w, 7.0F);
