@@ -102,15 +102,15 @@ void sample_along(const RangeImageView& scan, const Pose& work_T_scan, int colum
   bend.add(std::fabs(last.z - 2.0 * p.z + next.z));
 }
 
-void take_samples(const RangeImageView& scan, const Pose& work_T_scan, Samples& out) noexcept {
+/// Samples row r, if it is one of those that are.
+void sample_row(const RangeImageView& scan, const Pose& work_T_scan, int r, Samples& out) noexcept {
   const int column_step = std::max(1, scan.width_px / kSampleSide);
   const int row_step = std::max(1, scan.height_px / kSampleSide);
-  for (int r = 0; r < scan.height_px; r += row_step) {
-    // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
-    for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
-      sample_along(scan, work_T_scan, c, r, 1, 0, out.along_row, out.bend_along_row);
-      sample_along(scan, work_T_scan, c, r, 0, 1, out.along_column, out.bend_along_column);
-    }
+  if (r < 0 || r % row_step != 0) return;
+  // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
+  for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
+    sample_along(scan, work_T_scan, c, r, 1, 0, out.along_row, out.bend_along_row);
+    sample_along(scan, work_T_scan, c, r, 0, 1, out.along_column, out.bend_along_column);
   }
 }
 
@@ -138,10 +138,13 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena
   const Affine affine = affine_of(work_T_scan);
   Extent extent;
   const RowKernels& kernels = row_kernels(path);
-  for (int r = 0; r < scan.height_px; ++r) kernels.add_extent(scan, r, affine, extent);
+  for (int r = 0; r < scan.height_px; ++r) {
+    kernels.add_extent(scan, r, affine, extent);
+    sample_row(scan, work_T_scan, r - 1, samples);  // while it and its neighbours are at hand
+  }
+  sample_row(scan, work_T_scan, scan.height_px - 1, samples);
   if (extent.has_wild) return Status::kNotFinite;
   write_extent(extent, result);
-  take_samples(scan, work_T_scan, samples);
   result.pitch_along_row_mm = samples.along_row.median();
   result.pitch_along_column_mm = samples.along_column.median();
   result.noise_sigma_mm = std::max(samples.bend_along_row.lower_half_mean(),
