@@ -39,7 +39,6 @@ void add(const std::string& sweep, double x, const std::function<Cost()>& run) {
         state.counters["search_us"] = benchmark::Counter(sum.search_us, mean);
         if (sum.total_us > 0.0) state.counters["total_us"] = benchmark::Counter(sum.total_us, mean);
       })
-      ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
 }
 

@@ -130,7 +130,6 @@ void add(const ScanSize& size, const std::string& name, int count, const Kernel&
                                    next = (next + 1) % maps.size();
                                  }
                                })
-      ->UseRealTime()
       ->Unit(benchmark::kMicrosecond);
 }
 

@@ -24,7 +24,7 @@ def groups(quick):
     repetitions = 1 if quick else 3
     yield "^roof/", repetitions + 2, 0.02
     for row in rows:
-        yield f"^search/{row}/", repetitions, 0.05
+        yield f"^search/{row}/", 1 if row in CYLINDERS else repetitions, 0.05
     for row in ["medium_240", "medium_720"]:
         yield f"^prune/{row}/", repetitions + 2, 0.05
     yield "^image/" if not quick else "^image/600x500/", repetitions + 2, 0.03

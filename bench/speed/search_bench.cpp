@@ -136,27 +136,24 @@ using Contender = std::function<void(Input&)>;
 void add(
     const std::string& group, const Row& row, const std::string& name, int count,
     const Contender& contender, const Contender& prepare = [](Input&) {}, int lane_count = 0) {
-  benchmark::RegisterBenchmark(
-      (group + "/" + row.name + "/" + name).c_str(),
-      [=](benchmark::State& state) {
-        Inputs& inputs = inputs_of(row, count);
-        double evaluations = 0.0;
-        double bytes = 0.0;
-        for (const auto& input : inputs) {
-          prepare(*input);
-          evaluations += input->evaluation_count();
-          if (lane_count > 0) bytes += input->loaded_bytes(lane_count);
-        }
-        for (auto _ : state) {
-          for (const auto& input : inputs) contender(*input);
-        }
-        const auto rate = benchmark::Counter::kIsIterationInvariantRate;
-        state.counters["evaluations_per_s"] = benchmark::Counter(evaluations, rate);
-        if (lane_count > 0) state.counters["loaded_bytes_per_s"] = benchmark::Counter(bytes, rate);
-        state.counters["evaluations"] = evaluations;
-      })
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark((group + "/" + row.name + "/" + name).c_str(), [=](benchmark::State&
+                                                                                      state) {
+    Inputs& inputs = inputs_of(row, count);
+    double evaluations = 0.0;
+    double bytes = 0.0;
+    for (const auto& input : inputs) {
+      prepare(*input);
+      evaluations += input->evaluation_count();
+      if (lane_count > 0) bytes += input->loaded_bytes(lane_count);
+    }
+    for (auto _ : state) {
+      for (const auto& input : inputs) contender(*input);
+    }
+    const auto rate = benchmark::Counter::kIsIterationInvariantRate;
+    state.counters["evaluations_per_s"] = benchmark::Counter(evaluations, rate);
+    if (lane_count > 0) state.counters["loaded_bytes_per_s"] = benchmark::Counter(bytes, rate);
+    state.counters["evaluations"] = evaluations;
+  })->Unit(benchmark::kMillisecond);
 }
 
 void add_ours(const std::string& group, const Row& row, const NamedPath& path, int count) {
@@ -207,7 +204,7 @@ void register_roof(const NamedPath& path) {
         state.counters["loaded_bytes_per_s"] =
             benchmark::Counter(16.0 * static_cast<double>(level.size_bytes),
                                benchmark::Counter::kIsIterationInvariantRate);
-      })->UseRealTime();
+      });
     }
   }
 }

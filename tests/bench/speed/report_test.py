@@ -14,7 +14,7 @@ KERNELS = ["Sobel", "chamfer", "chamfer_in_eight_directions", "whole_edge_chain"
 
 
 def run(name, time_ms, repetition=0, **counters):
-    return {"name": name, "run_name": f"{name}/repeats:3/real_time", "run_type": "iteration", "real_time": time_ms,
+    return {"name": name, "run_name": f"{name}/repeats:3/real_time", "run_type": "iteration", "cpu_time": time_ms,
             "time_unit": "ms", "repetition_index": repetition} | counters
 
 

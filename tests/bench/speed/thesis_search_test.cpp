@@ -62,11 +62,13 @@ struct Made {
 
 /// Equations 2.2 and 2.8's errors, spelled out.
 double slow_error(const Made& made, const Tilt& tilt, const Turn& turn, int column, int row) {
+  // Halves of a pixel fall where 4096.5 in floats lets them.
+  const auto rounded = [](float value) {
+    return static_cast<int>(std::floor(value + 4096.5F)) - 4096;
+  };
   const auto pixel = [&](float x, float y) {
-    const double u = static_cast<double>(turn.m[0] * x + turn.m[1] * y);
-    const double v = static_cast<double>(turn.m[3] * x + turn.m[4] * y);
-    return made.images.index(column + static_cast<int>(std::floor(u + 0.5)),
-                             row + static_cast<int>(std::floor(v + 0.5)));
+    return made.images.index(column + rounded(turn.m[0] * x + turn.m[1] * y),
+                             row + rounded(turn.m[3] * x + turn.m[4] * y));
   };
   double edge = 0.0;
   for (const EdgePoint& p : made.cloud.edge)
