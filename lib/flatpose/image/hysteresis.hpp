@@ -16,8 +16,8 @@ inline constexpr std::uint8_t kKindBits = 0x0F;
 
 /// Takes the marks off: what is strong, or weak and 8-connected to a strong cell through weak ones
 /// of its family (jumps of both kinds, or creases), keeps its kind; all else becomes 0.
-/// Shape: `stack` has room for every cell; the outermost ring carries no marks.
-/// Cost: linear in cells.  Thread: reentrant.
+/// Shape: sides up to 32767 cells; `stack` has room for every cell; the outermost ring carries no
+/// marks. Cost: linear in cells.  Thread: reentrant.
 void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack,
                     VectorPath path = VectorPath::kPortable) noexcept;
 
