@@ -64,7 +64,8 @@ def search_ratio(figures, scenes, path, thesis="thesis", ours="sums"):
 def search_rows(figures):
     rows = []
     kinds = [("all positions", PADS), ("planar positions in both", [f"{pad}_planar" for pad in PADS]),
-             ("one tilt for all", ["lone_level"]), ("cylinders, 6700^2", ["cyl_loose", "cyl_grid", "cyl_brick"])]
+             ("one tilt for all", ["lone_level"]), ("cylinders, 6700^2", ["cyl_loose", "cyl_grid", "cyl_brick"]),
+             ("cylinders, 6700^2, planar positions in both", ["cyl_loose_planar"])]
     for kind, scenes in kinds:
         for path, least in [("avx512", 250), ("avx2", 120)]:
             rows.append(at_least(f"search against the thesis's scalar form, {kind}, {path}",
@@ -99,11 +100,13 @@ def prune_rows(figures):
         rows.append(at_least(f"exact pruning against shifted sums without it, {angles} angles, {path}",
                              figures.ratio(f"{group}/whole_{path}", f"{group}/pruned_{path}"), least, NOT_BUILT))
         early = figures.ratio(f"{group}/whole_{path}", f"{group}/sums_{path}")
-        rows.append(row(f"early termination alone, {angles} angles, {path}", early, "beside it", lambda v: True, times))
+        rows.append(Row(f"early termination alone, {angles} angles, {path}", "-" if early is None else times(early), "beside it",
+                        NOT_MEASURED if early is None else "-"))
     return rows
 
 
 def thread_rows(figures):
+    """Counters PATH_2_threads_STAGE_us of the cycle group, noted beside PATH_STAGE_us once locate takes an executor."""
     rows = []
     for size in ["600x500", "1536x1280"]:
         one, two = pads_us(figures, size), pads_us(figures, size, threads="_2_threads")

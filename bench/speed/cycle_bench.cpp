@@ -38,12 +38,14 @@ double median(std::vector<double> values) {
 
 using Samples = std::map<std::string, std::vector<double>>;
 
-void note(const locate::Timings& t, const std::string& path, Samples& samples) {
+/// `run` is a path's name; with "_2_threads" behind it, it fills the report's column of two
+/// threads.
+void note(const locate::Timings& t, const std::string& run, Samples& samples) {
   const std::pair<const char*, std::int64_t> stages[] = {
       {"rectify", t.rectify_us}, {"features", t.features_us}, {"search", t.search_us},
       {"refine", t.refine_us},   {"verify", t.verify_us},     {"total", t.total_us}};
   for (const auto& [stage, time_us] : stages)
-    samples[path + "_" + stage + "_us"].push_back(static_cast<double>(time_us));
+    samples[run + "_" + stage + "_us"].push_back(static_cast<double>(time_us));
 }
 
 void run_cycles(benchmark::State& state, const std::string& scene, const ScanSize& size,

@@ -46,7 +46,7 @@ def roof_table(figures):
 
 def image_table(figures):
     rows = []
-    for name in figures.names("image/"):
+    for name in sorted(figures.names("image/")):
         if not name.endswith("/ours"):
             continue
         group = name.rsplit("/", 1)[0]
@@ -82,7 +82,7 @@ def growth_series(figures):
             time_us = figures.counter(name, f"{stage}_us")
             if x and time_us:
                 series.setdefault(f"{sweep}, {stage}", []).append((x, time_us * 1e-6))
-    return {sweep: sorted(points) for sweep, points in series.items()}
+    return {sweep: sorted(series[sweep]) for sweep in sorted(series)}
 
 
 def growth_table(figures):

@@ -13,24 +13,24 @@ sys.dont_write_bytecode = True  # the source tree stays as it is
 from report import Figures, write_report
 
 PADS = ["lone", "low", "medium", "high", "pile"]
-CYLINDERS = ["cyl_loose", "cyl_grid", "cyl_brick"]
+CYLINDERS = ["cyl_loose", "cyl_grid", "cyl_brick", "cyl_loose_planar"]
 SIZES = ["600x500", "1536x1280"]
 
 
 def groups(quick):
     """(filter, repetitions, seconds a repetition). A group is a process: its contenders are interleaved."""
-    rows = PADS[:1] + ["lone_planar", "lone_level", "cyl_loose"] if quick else (
+    rows = ["lone", "lone_planar", "lone_level"] if quick else (
         PADS + [f"{pad}_planar" for pad in PADS] + ["medium_normals", "medium_normals_level", "lone_level"] + CYLINDERS)
     repetitions = 1 if quick else 3
     yield "^roof/", repetitions + 2, 0.02
     for row in rows:
         yield f"^search/{row}/", 1 if row in CYLINDERS else repetitions, 0.05
-    for row in ["medium_240", "medium_720"]:
+    for row in ["medium_240"] if quick else ["medium_240", "medium_720"]:
         yield f"^prune/{row}/", repetitions + 2, 0.05
     yield "^image/" if not quick else "^image/600x500/", repetitions + 2, 0.03
-    for size in SIZES:
+    for size in SIZES[:1] if quick else SIZES:
         yield f"^cycle/{size}/", 1, 0.0
-    yield "^growth/", repetitions, 0.02
+    yield "^growth/angles/" if quick else "^growth/", repetitions, 0.02
 
 
 def run_group(program, pattern, repetitions, seconds, quick):

@@ -44,6 +44,11 @@ class Input {
     sums_.run(form);
     return sums_.digest();
   }
+  /// Touches the pages of the scratch memory, so that no contender pays for them.
+  void warm() {
+    if (!is_warm_) search(VectorPath::kPortable);
+    is_warm_ = true;
+  }
   void search(VectorPath path) {
     search::GridSearchConfig config = ground_->search;
     config.vector_path = path;
@@ -58,6 +63,7 @@ class Input {
   BlockSums sums_;
   std::unique_ptr<ThesisGround> thesis_;
   std::vector<search::Candidate> candidates_;
+  bool is_warm_ = false;
 };
 
 struct Row {
@@ -82,8 +88,8 @@ std::vector<Row> table_4_1() {
                         row("medium", 220, 16),   row("high", 220, 18),
                         row("pile", 180, 28),     row("cyl_loose", 6700, 4),
                         row("cyl_grid", 6700, 4), row("cyl_brick", 6700, 4)};
-  const std::size_t pad_count = 5;
-  for (std::size_t i = 0; i < pad_count; ++i) {
+  const std::size_t planar_count = 6;  // the pads, and cylinders once
+  for (std::size_t i = 0; i < planar_count; ++i) {
     Row planar = rows[i];
     planar.name += "_planar";
     planar.config.is_gated = true;
@@ -160,7 +166,9 @@ void add_ours(const std::string& group, const Row& row, const NamedPath& path, i
   const search::SearchBlock early = search::search_block_for(path.path);
   const search::SearchBlock whole = whole_sums_for(path.path);
   add(group, row, "sums_" + path.name, count, [=](Input& input) { input.sum(early); });
-  add(group, row, "search_" + path.name, count, [=](Input& input) { input.search(path.path); });
+  add(
+      group, row, "search_" + path.name, count, [=](Input& input) { input.search(path.path); },
+      [](Input& input) { input.warm(); });
   if (whole == nullptr) return;
   add(
       group, row, "whole_" + path.name, count, [=](Input& input) { input.sum(whole); },

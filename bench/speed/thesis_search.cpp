@@ -23,8 +23,11 @@ inline Normal turned(const Turn& turn, const Normal& n) {
           m[6] * n.x + m[7] * n.y + m[8] * n.z, 0.0F};
 }
 
-inline float distance2(const Normal& a, const Normal& b) {
-  return 2.0F - 2.0F * (a.x * b.x + a.y * b.y + a.z * b.z);
+inline float cosine(const Normal& a, const Normal& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// The edges' distances over the cosine of the tilt, and the sum of |n - t|^2.
+inline float error_of(float edge, float over_cos_tilt, std::size_t surface_count, float cosines) {
+  return edge * over_cos_tilt + 2.0F * (static_cast<float>(surface_count) - cosines);
 }
 
 /// The position's own pixel.
@@ -35,25 +38,26 @@ struct Cursor {
 };
 
 inline float projecting_error(const Cursor& at, const Cloud& cloud, const Turn& turn,
-                              float cos_tilt) {
+                              float over_cos_tilt) {
   float edge = 0.0F;
   for (const EdgePoint& p : cloud.edge) edge += at.chamfer_px[offset_of(turn, p.x, p.y, at.row_px)];
-  float surface = 0.0F;
+  float cosines = 0.0F;
   for (const SurfacePoint& p : cloud.surface) {
     const Normal& found = at.normal[offset_of(turn, p.x, p.y, at.row_px)];
-    surface += distance2(found, turned(turn, p.normal));
+    cosines += cosine(found, turned(turn, p.normal));
   }
-  return edge / cos_tilt + surface;
+  return error_of(edge, over_cos_tilt, cloud.surface.size(), cosines);
 }
 
 inline float tabled_error(const Cursor& at, const std::int32_t* edge_offset, int edge_count,
-                          const TabledSurface* surface_offset, int surface_count, float cos_tilt) {
+                          const TabledSurface* surface_offset, int surface_count,
+                          float over_cos_tilt) {
   float edge = 0.0F;
   for (int i = 0; i < edge_count; ++i) edge += at.chamfer_px[edge_offset[i]];
-  float surface = 0.0F;
+  float cosines = 0.0F;
   for (int i = 0; i < surface_count; ++i)
-    surface += distance2(at.normal[surface_offset[i].offset], surface_offset[i].normal);
-  return edge / cos_tilt + surface;
+    cosines += cosine(at.normal[surface_offset[i].offset], surface_offset[i].normal);
+  return error_of(edge, over_cos_tilt, static_cast<std::size_t>(surface_count), cosines);
 }
 
 /// The best so far.
@@ -84,12 +88,13 @@ void search_position(const Cursor& at, const Cloud& cloud, const Tilt& tilt, int
   const TabledSurface* surface = tilt.surface_offset.data();
   const int angle_count = static_cast<int>(tilt.turns.size());
   const Turn* turns = tilt.turns.data();
+  const float over_cos_tilt = 1.0F / tilt.cos_tilt;
   for (int angle = 0; angle < angle_count; ++angle) {
     float error = 0.0F;
     if constexpr (kForm == Form::kProjecting) {
-      error = projecting_error(at, cloud, turns[angle], tilt.cos_tilt);
+      error = projecting_error(at, cloud, turns[angle], over_cos_tilt);
     } else {
-      error = tabled_error(at, edge, edge_count, surface, surface_count, tilt.cos_tilt);
+      error = tabled_error(at, edge, edge_count, surface, surface_count, over_cos_tilt);
       edge += edge_count;
       surface += surface_count;
     }
