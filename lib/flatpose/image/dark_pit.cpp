@@ -155,6 +155,32 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
   }
 }
 
+// What adjoins a pit and could be one belongs to it: the tips of the gap between three that touch
+// are narrower than any square. Sweeps down and up reach as far as the gap turns back twice.
+void lower_adjoining(ImageView<const std::uint8_t> marks, float drop_mm,
+                     ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+  const auto adjoin = [&](int x, int y, int dx, int dy) {
+    const bool beside = missing.contains(x + dx, y) && missing(x + dx, y) == kDarkPit;
+    const bool beyond = missing.contains(x, y + dy) && missing(x, y + dy) == kDarkPit;
+    if (marks(x, y) != kPit || missing(x, y) == kDarkPit || (!beside && !beyond)) return;
+    missing(x, y) = kDarkPit;
+    filled_mm(x, y) -= drop_mm;
+  };
+  constexpr int kRoundCount = 2;
+  for (int round = 0; round < kRoundCount; ++round) {
+    for (int y = 0; y < missing.height_px; ++y) {
+      if (!has_pits(marks, y)) continue;
+      for (int x = 0; x < missing.width_px; ++x) adjoin(x, y, -1, -1);
+      for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, -1);
+    }
+    for (int y = missing.height_px - 1; y >= 0; --y) {
+      if (!has_pits(marks, y)) continue;
+      for (int x = 0; x < missing.width_px; ++x) adjoin(x, y, -1, 1);
+      for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, 1);
+    }
+  }
+}
+
 }  // namespace
 
 void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcept {
@@ -177,6 +203,7 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
   clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
   lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm);
+  lower_adjoining(s.marks, config.drop_mm, missing, filled_mm);
   return Status::kOk;
 }
 

@@ -58,7 +58,8 @@ class Pipeline {
 
   // Survey the scan, choose the grid, rectify and find edges.
   Status look() noexcept {
-    const Result<rectify::Survey> survey = rectify::survey(scan_, frames_.work_T_scan, arena_);
+    const Result<rectify::Survey> survey =
+        rectify::survey(scan_, frames_.work_T_scan, arena_, limits_.vector_path);
     if (!survey) return survey.status();
     if (1.0 - survey->missing_share < kValidShareMin) return end(Outcome::kScanPoor);
     const double pitch_mm = std::max(survey->pitch_along_row_mm, survey->pitch_along_column_mm);
@@ -124,7 +125,7 @@ class Pipeline {
     if (s != Status::kOk) return s;
     s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
                                settings_.tilt_radius_px, arena_, work_.tilt,
-                               settings_.places.stride_px);
+                               settings_.places.stride_px, limits_.vector_path);
     if (s != Status::kOk) return s;
     s = search::collect_places(work_.tilt, settings_.places, work_.places);
     if (s != Status::kOk) return s;

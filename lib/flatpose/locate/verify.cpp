@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "flatpose/image/dark_pit.hpp"
 #include "flatpose/locate/hold.hpp"
@@ -94,16 +95,20 @@ bool is_claimed(const refine::FineImages& images, ImageView<const std::uint8_t> 
   return claimed.contains(cell.column, cell.row) && claimed(cell.column, cell.row) != 0;
 }
 
-// How well an edge that falls the right way agrees with a contour point: 1 within the tolerance,
-// then less and less, 0 beyond kFadeShare tolerances. A hard bound would let a fraction of a cell
-// decide.
-double edge_agreement(const refine::FineImages& images, const Vec3& p_mm, const Vec3& falling,
-                      double tolerance_px) noexcept {
-  constexpr double kFadeShare = 2.4;
+// How far off the nearest edge is that falls the right way.
+double edge_distance_px(const refine::FineImages& images, const Vec3& p_mm,
+                        const Vec3& falling) noexcept {
   const Cell cell = cell_at(images.grid, p_mm.x, p_mm.y);
-  if (!images.height_mm.contains(cell.column, cell.row)) return 0.0;
+  if (!images.height_mm.contains(cell.column, cell.row))
+    return std::numeric_limits<double>::infinity();
   const int octant = image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
-  const double distance_px = images.edge_distance_third_px[octant](cell.column, cell.row) / 3.0;
+  return images.edge_distance_third_px[octant](cell.column, cell.row) / 3.0;
+}
+
+// How well an edge so far off agrees with a contour point: 1 within the tolerance, then less and
+// less, 0 beyond kFadeShare tolerances. A hard bound would let a fraction of a cell decide.
+double edge_agreement(double distance_px, double tolerance_px) noexcept {
+  constexpr double kFadeShare = 2.4;
   return std::clamp((kFadeShare - distance_px / tolerance_px) / (kFadeShare - 1.0), 0.0, 1.0);
 }
 
@@ -112,14 +117,15 @@ double edge_agreement(const refine::FineImages& images, const Vec3& p_mm, const 
 constexpr double kProbe_px = 2.5;
 constexpr double kWallShare = 0.75;
 
-struct Verdict {
+struct PointVerdict {
   bool seen = false;
-  double agreement = 0.0;  ///< 1: confirmed, 0: contradicted.
+  double agreement = 0.0;                                        ///< 1: confirmed, 0: contradicted.
+  double distance_px = std::numeric_limits<double>::infinity();  ///< Of the edge.
 };
 
-Verdict judge_contour(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
-                      const Vec3& p_mm, const Vec3& falling, const Vec3& probe_mm,
-                      const VerifyConfig& config) noexcept {
+PointVerdict judge_contour(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
+                           const Vec3& p_mm, const Vec3& falling, const Vec3& probe_mm,
+                           const VerifyConfig& config) noexcept {
   // What hides the contour covers most of the cells beside it; what confirms it may be one of them.
   const auto is_hidden = [&](const Vec3& beside_mm) {
     return sight_on_surface(images, beside_mm, config.surface_tolerance_mm) == Sight::kAbove ||
@@ -129,11 +135,13 @@ Verdict judge_contour(const refine::FineImages& images, ImageView<const std::uin
   const Sight inside = sight(images, p_mm - probe_mm, config.height_tolerance_mm);
   const Sight outside = sight(images, p_mm + probe_mm, config.height_tolerance_mm);
   if (inside == Sight::kNothing) return {};
-  const double agreement = edge_agreement(images, p_mm, falling, config.edge_tolerance_px);
+  const double distance_px = edge_distance_px(images, p_mm, falling);
+  const double agreement = edge_agreement(distance_px, config.edge_tolerance_px);
   // Another part adjoins here, and where two touch at one height there is no edge.
   if (agreement < 1.0 && is_claimed(images, claimed, p_mm + probe_mm)) return {};
   if (outside == Sight::kNothing && agreement == 0.0) return {};  // the scan ends or is dark here
-  return {true, inside == Sight::kAt ? agreement : 0.0};
+  if (inside != Sight::kAt) return {true};
+  return {true, agreement, distance_px};
 }
 
 double share(double confirmed, double visible) noexcept {
@@ -199,9 +207,16 @@ class LandmarkTally {
  public:
   explicit LandmarkTally(const model::Landmarks& landmarks) noexcept : landmarks_(landmarks) {}
 
-  void add(int point, double agreement) noexcept {
-    holes_[landmarks_.hole[point]].add(agreement);
-    if (landmarks_.is_telltale[point]) telltales_.add(agreement);
+  void add(int point, const PointVerdict& verdict) noexcept {
+    holes_[landmarks_.hole[point]].add(verdict.agreement);
+    const double gap_px = landmarks_.telltale_gap_px[point];
+    if (gap_px > 0.0) telltales_.add(verdict.distance_px < 0.5 * gap_px ? 1.0 : 0.0);
+  }
+
+  /// A place where the contour would be if the part lay on its face.
+  void add_mirrored(int index, const PointVerdict& verdict) noexcept {
+    const double gap_px = landmarks_.mirrored_gap_px[index];
+    telltales_.add(verdict.distance_px > 0.5 * gap_px ? 1.0 : 0.0);
   }
 
   /// 1 when every hole seen is there, less when one is hardly there.
@@ -215,13 +230,14 @@ class LandmarkTally {
     }
     return worst;
   }
-  /// Whether the contour seen is the one of the part's own face; a part whose faces differ in
-  /// hardly a point shows it always.
+  /// Whether the contour seen is the one of the part's own face; a part whose faces differ too
+  /// little for the cells shows it always.
   [[nodiscard]] bool shows_face(int contour_count) const noexcept {
-    constexpr double kTelltaleShareMin = 0.02;
-    constexpr double kConfirmedMin = 1.5;
-    constexpr double kAgreementMin = 0.4;
-    if (landmarks_.telltale_count < kTelltaleShareMin * contour_count) return true;
+    constexpr double kTelltaleShareMin = 0.06;
+    constexpr double kConfirmedMin = 3.0;
+    constexpr double kAgreementMin = 0.5;
+    const int count = landmarks_.telltale_count + landmarks_.mirrored_count;
+    if (count < kTelltaleShareMin * contour_count) return true;
     return telltales_.agreement_sum >= kConfirmedMin &&
            telltales_.mean_agreement() >= kAgreementMin;
   }
@@ -271,8 +287,7 @@ Verification verify(const model::Template& part, const refine::FineImages& image
   double confirmed_weight = 0.0;
   LandmarkTally landmarks(part.landmarks);
   Hold hold(part);
-  for (int i = 0; i < part.contour_count; ++i) {
-    const model::ContourPoint& p = part.contour[i];
+  const auto judge = [&](const model::ContourPoint& p) {
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
     // A side wall that leans toward the sensor draws the fall out over its own width, and where the
@@ -282,15 +297,22 @@ Verification verify(const model::Template& part, const refine::FineImages& image
         std::max(typical_mm, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
     leaning.edge_tolerance_px +=
         kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
-    const Verdict verdict =
-        judge_contour(images, claimed, q_mm, falling, probe_mm * falling, leaning);
+    return judge_contour(images, claimed, q_mm, falling, probe_mm * falling, leaning);
+  };
+  for (int i = 0; i < part.contour_count; ++i) {
+    const model::ContourPoint& p = part.contour[i];
+    const PointVerdict verdict = judge(p);
     if (!verdict.seen) continue;
     ++out.contour.visible_count;
     visible_weight += weight(p);
     if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
     confirmed_weight += verdict.agreement * weight(p);
-    landmarks.add(i, verdict.agreement);
+    landmarks.add(i, verdict);
     hold.add(p, verdict.agreement);
+  }
+  for (int i = 0; config.use_landmarks && i < part.landmarks.mirrored_count; ++i) {
+    const PointVerdict verdict = judge(part.landmarks.mirrored[i]);
+    if (verdict.seen) landmarks.add_mirrored(i, verdict);
   }
   out.visible = share(visible_area, area);
   out.score = surface_agreement(share(confirmed_area, visible_area), config.contradiction_weight) *

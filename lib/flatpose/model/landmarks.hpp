@@ -5,8 +5,9 @@
 // alone, and a hole is little beside the rest of the contour.
 //
 // Telltales: points that the part lying on its face has no contour at. The contour seen then is the
-// mirrored one; it is laid onto the part's own as well as it goes, and what finds no counterpart is
-// a telltale. A part that looks the same from both sides has none.
+// mirrored one; it is laid onto the part's own as well as it goes, and what it stays away from is a
+// telltale. So is, the other way round, what the mirrored contour shows where the part has none. A
+// part that looks the same from both sides has neither.
 
 #include "flatpose/model/template.hpp"
 

@@ -57,19 +57,7 @@ class MirroredSelf {
     return best;
   }
 
-  /// Whether the mirrored contour passes a place in the same direction.
-  [[nodiscard]] bool passes(const Placement& placement, const ContourPoint& p) const noexcept {
-    const SinCos turn = sin_cos(placement.turn_rad);
-    for (const ContourPoint& other : part_.contour_points()) {
-      if (is_counterpart(p, placed(other, placement, turn), reach_mm())) return true;
-    }
-    return false;
-  }
-
- private:
-  // Edges are told apart that lie farther apart than verification lets them agree by half.
-  [[nodiscard]] double reach_mm() const noexcept { return 2.5 * part_.cell_mm; }
-
+  /// Where a point of the mirrored contour comes to lie.
   [[nodiscard]] Placed placed(const ContourPoint& p, const Placement& placement,
                               const SinCos& turn) const noexcept {
     const double x = middle_x_mm_ - p.x_mm;
@@ -79,11 +67,46 @@ class MirroredSelf {
             -turn.cos * p.nx - turn.sin * p.ny, -turn.sin * p.nx + turn.cos * p.ny};
   }
 
-  // Along the contour the points lie apart; across it they must agree.
-  static bool is_counterpart(const ContourPoint& p, const Placed& q, double reach_mm) noexcept {
+  /// How far off the mirrored contour is that falls the same way as the point, in cells.
+  [[nodiscard]] double gap_px(const Placement& placement, const ContourPoint& p) const noexcept {
+    const SinCos turn = sin_cos(placement.turn_rad);
+    double gap_px = kFar_px;
+    for (const ContourPoint& other : part_.contour_points())
+      gap_px = std::min(gap_px, distance_px(p, placed(other, placement, turn)));
+    return gap_px;
+  }
+
+  /// How far off the part's own contour is from a mirrored point, in cells.
+  [[nodiscard]] double gap_of_mirrored_px(const Placed& q) const noexcept {
+    double gap_px = kFar_px;
+    for (const ContourPoint& other : part_.contour_points())
+      gap_px = std::min(gap_px, distance_px(other, q));
+    return gap_px;
+  }
+
+ private:
+  static constexpr double kAlongShare = 2.0;
+  static constexpr double kFar_px = 4.0;
+
+  // Counterparts lie no farther apart than verification lets them agree by half.
+  [[nodiscard]] double reach_mm() const noexcept { return 2.5 * part_.cell_mm; }
+
+  // Along the contour the points lie apart; across it they must agree. As far as kFar_px.
+  [[nodiscard]] double distance_px(const ContourPoint& p, const Placed& q) const noexcept {
+    if (!faces_alike(p, q)) return kFar_px;
+    const double across = p.nx * (q.x_mm - p.x_mm) + p.ny * (q.y_mm - p.y_mm);
+    const double along = p.nx * (q.y_mm - p.y_mm) - p.ny * (q.x_mm - p.x_mm);
+    const double beyond_mm = std::max(0.0, std::fabs(along) - kAlongShare * reach_mm());
+    return std::min(kFar_px, std::sqrt(across * across + beyond_mm * beyond_mm) / part_.cell_mm);
+  }
+
+  static bool faces_alike(const ContourPoint& p, const Placed& q) noexcept {
     constexpr double kCosineMin = 0.8;
-    constexpr double kAlongShare = 2.0;
-    if (p.nx * q.nx + p.ny * q.ny < kCosineMin) return false;
+    return p.nx * q.nx + p.ny * q.ny >= kCosineMin;
+  }
+
+  static bool is_counterpart(const ContourPoint& p, const Placed& q, double reach_mm) noexcept {
+    if (!faces_alike(p, q)) return false;
     const double dx = q.x_mm - p.x_mm;
     const double dy = q.y_mm - p.y_mm;
     return std::fabs(p.nx * dx + p.ny * dy) <= reach_mm &&
@@ -176,9 +199,26 @@ class MirroredSelf {
 void find_telltales(const Template& part, Landmarks& out) noexcept {
   const MirroredSelf mirrored(part);
   const Placement placement = mirrored.best();
+  // Nearer than this, an edge a fraction of a cell off decides.
+  constexpr double kGapMin_px = 1.5;
+  const SinCos turn = sin_cos(placement.turn_rad);
   for (int i = 0; i < part.contour_count; ++i) {
-    out.is_telltale[i] = !mirrored.passes(placement, part.contour[i]);
-    out.telltale_count += out.is_telltale[i] ? 1 : 0;
+    const ContourPoint& p = part.contour[i];
+    const double gap_px = mirrored.gap_px(placement, p);
+    if (gap_px >= kGapMin_px) {
+      out.telltale_gap_px[i] = static_cast<float>(gap_px);
+      ++out.telltale_count;
+    }
+    const Placed q = mirrored.placed(p, placement, turn);
+    const double mirrored_gap_px = mirrored.gap_of_mirrored_px(q);
+    if (mirrored_gap_px < kGapMin_px || out.mirrored_count == kMirroredCountMax) continue;
+    ContourPoint& shown = out.mirrored[out.mirrored_count];
+    shown = p;
+    shown.x_mm = static_cast<float>(q.x_mm);
+    shown.y_mm = static_cast<float>(q.y_mm);
+    shown.nx = static_cast<float>(q.nx);
+    shown.ny = static_cast<float>(q.ny);
+    out.mirrored_gap_px[out.mirrored_count++] = static_cast<float>(mirrored_gap_px);
   }
 }
 

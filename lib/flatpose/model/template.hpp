@@ -76,15 +76,20 @@ enum Weakness : std::uint32_t {
 };
 
 inline constexpr int kHoleCountMax = 16;
+inline constexpr int kMirroredCountMax = 128;
 
 /// What tells the part from its look-alikes, read off its contour: see landmarks.hpp.
 struct Landmarks {
   std::array<std::uint8_t, kContourPointCountMax> hole{};  ///< Of a point: 0 none, else 1, 2, ..
   std::array<int, kHoleCountMax + 1> hole_point_count{};
   int hole_count = 0;
-  /// Whether the part lying on its face has no such contour in this place.
-  std::array<bool, kContourPointCountMax> is_telltale{};
+  /// How far off the contour of the part lying on its face is, in cells; 0 where too near to tell.
+  std::array<float, kContourPointCountMax> telltale_gap_px{};
   int telltale_count = 0;
+  /// Points of the contour that it would show then, and how far off this part's own contour is.
+  std::array<ContourPoint, kMirroredCountMax> mirrored{};
+  std::array<float, kMirroredCountMax> mirrored_gap_px{};
+  int mirrored_count = 0;
 };
 
 struct Template {

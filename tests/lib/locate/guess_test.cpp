@@ -93,6 +93,15 @@ TEST(Guess, AHoleInSightTellsTheFace) {
   EXPECT_EQ(located_holed(true, over_large).match_count, 0);
 }
 
+TEST(Guess, SurfaceWhereAHoleWouldBeTellsTheFace) {
+  // Only the rim of the small hole is covered; around it the surface shows that the large one,
+  // which would be there on its face, is not.
+  const auto over_rims = [](const Vec3& p) {
+    return over_large(p) || std::hypot(p.x - kSmall.x_mm, p.y - kSmall.y_mm) < 5.0;
+  };
+  EXPECT_EQ(located_holed(false, over_rims).match_count, 1);
+}
+
 TEST(Guess, WithEveryHoleCoveredTheFaceIsNotKnown) {
   const auto over_both = [](const Vec3& p) { return over_large(p) || over_small(p); };
   for (const bool on_its_face : {false, true}) {

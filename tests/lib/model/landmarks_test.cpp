@@ -87,6 +87,7 @@ TEST(Landmarks, OfARectangleAreNone) {
   const Landmarks found = Drawing().rectangle(80, 30).landmarks();
   EXPECT_EQ(found.hole_count, 0);
   EXPECT_EQ(found.telltale_count, 0);
+  EXPECT_EQ(found.mirrored_count, 0);
 }
 
 TEST(Landmarks, HolesAreLoopsThatFallInward) {
@@ -112,12 +113,26 @@ TEST(Landmarks, TelltalesAreWhatTheMirroredSelfLacks) {
   const Landmarks found = d.landmarks();
   int in_holes = 0;
   for (int i = 0; i < d.part().contour_count; ++i) {
-    if (!found.is_telltale[i]) continue;
+    if (found.telltale_gap_px[i] == 0.0F) continue;
     EXPECT_GT(found.hole[i], 0) << "a point of the outline, which is its own mirror image";
     ++in_holes;
   }
   EXPECT_EQ(in_holes, found.telltale_count);
   EXPECT_GT(in_holes, 60);  // of 31 + 62
+}
+
+TEST(Landmarks, HoldWhatTheMirroredSelfWouldShow) {
+  // Where the small hole is, it would show the large one, and the other way round.
+  const Landmarks found = Drawing().rectangle(100, 40).hole(-25, 6, 5).hole(25, 6, 10).landmarks();
+  ASSERT_GT(found.mirrored_count, 60);
+  for (int i = 0; i < found.mirrored_count; ++i) {
+    const ContourPoint& p = found.mirrored[i];
+    const double to_left = std::hypot(p.x_mm + 25.0, p.y_mm - 6.0);
+    const double to_right = std::hypot(p.x_mm - 25.0, p.y_mm - 6.0);
+    EXPECT_NEAR(p.x_mm < 0.0F ? to_left : to_right, p.x_mm < 0.0F ? 10.0 : 5.0, 1.0) << i;
+    EXPECT_NEAR(std::hypot(p.nx, p.ny), 1.0, 1e-5);
+    EXPECT_GE(found.mirrored_gap_px[i], 1.5F);
+  }
 }
 
 TEST(Landmarks, EqualHolesTellNothing) {
