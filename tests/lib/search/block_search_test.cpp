@@ -160,6 +160,70 @@ TEST_P(BlockSearch, NeverTakesACostThatSaturates) {
   for (const std::uint8_t angle : best.angle[0]) EXPECT_EQ(angle, kNoAngle);
 }
 
+/// 64 places of which each has an edge cost of its own and all the same surface cost, as normals.
+struct OneOfEach {
+  std::array<std::uint8_t, 3 * kBlockSize> bytes{};  // edge, normal's x, normal's y
+  std::array<std::uint8_t, kBlockSize> place_unit{};
+  std::array<std::uint16_t, kBlockSize> bin{};
+  std::array<ShiftedTemplate, 1> angle;
+  BlockJob job;
+
+  OneOfEach() {
+    angle[0].contour_count = angle[0].surface_count = 1;
+    angle[0].surface[0].offset_bytes = kBlockSize;
+    angle[0].surface[0].second_offset_bytes = 2 * kBlockSize;
+    job.image_bytes = bytes.data();
+    job.place_unit = place_unit.data();
+    job.bin = bin.data();
+    job.angles = angle;
+    job.use_height = false;
+    job.surface_cap = kCostMax;
+    job.cutoff = kCostMax;
+  }
+  OneOfEach(const OneOfEach&) = delete;
+  OneOfEach& operator=(const OneOfEach&) = delete;
+
+  void set_edges(int first) {
+    for (std::size_t i = 0; i < kBlockSize; ++i) bytes[i] = static_cast<std::uint8_t>(first + i);
+  }
+  void set_surface(int cost) {
+    std::fill_n(bytes.begin() + kBlockSize, kBlockSize, static_cast<std::uint8_t>(cost));
+  }
+  /// Costs that saturate are never found, and read as the cut-off, which is the same.
+  BlockBest::Lanes costs(VectorPath path) {
+    BlockBest best;
+    for (std::size_t sector = 0; sector < kSectorCount; ++sector) {
+      job.best_cost[sector] = best.cost[sector].data();
+      job.best_angle[sector] = best.angle[sector].data();
+    }
+    search_block_for(path)(job);
+    return best.cost[0];
+  }
+};
+
+TEST_P(BlockSearch, SumsEveryEdgeAndSurfaceAtEveryWeightAndTiltLikeTheScalarFormula) {
+  OneOfEach one;
+  for (const int weight : {1, 2, 3, 5}) {
+    one.job.surface_weight = static_cast<std::uint8_t>(weight);
+    for (int surface = 0; surface * weight <= kSurfaceCountMax * kSurfaceCostMax; ++surface) {
+      one.set_surface(surface);
+      for (int factor_q8 = 256; factor_q8 <= kEdgeFactorMax_q8; ++factor_q8) {
+        one.angle[0].edge_factor_q8 = factor_q8;
+        for (int first = 0; first <= kCostMax; first += kBlockSize) {
+          one.set_edges(first);
+          BlockBest::Lanes expected{};
+          for (int i = 0; i < kBlockSize; ++i) {
+            expected[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
+                std::min(surface * weight + ((first + i) * factor_q8 >> 8), kCostMax));
+          }
+          ASSERT_EQ(one.costs(GetParam()), expected)
+              << surface << " x " << weight << ", edges from " << first << " by " << factor_q8;
+        }
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Paths, BlockSearch, testing::ValuesIn(vector_paths()),
                          testing::PrintToStringParamName());
 
