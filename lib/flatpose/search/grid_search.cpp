@@ -11,7 +11,8 @@ namespace {
 
 static_assert(kAngleCountMax / kSectorCount < kNoAngle);
 
-/// Where the results of the blocks lie: by sector, as the places are.
+/// Where the results of the blocks lie: by sector, as the places are. What is no place has no
+/// angle.
 struct SearchMemory {
   std::array<std::span<std::uint8_t>, kSectorCount> best_cost;
   std::array<std::span<std::uint8_t>, kSectorCount> best_angle;
@@ -41,8 +42,11 @@ class Search {
         angle_count_(angle_count(angle_range_rad_, config.angle_step_rad)) {}
 
   bool take_memory(Arena& scratch) noexcept {
-    memory_ = take_search_memory(scratch, places_.bin.size());
-    return !scratch.failed();
+    memory_ = take_search_memory(scratch, places_.index(0, places_.height));
+    if (scratch.failed()) return false;
+    for (const auto& cost : memory_.best_cost) std::fill(cost.begin(), cost.end(), kCostMax);
+    for (const auto& angle : memory_.best_angle) std::fill(angle.begin(), angle.end(), kNoAngle);
+    return true;
   }
 
   void evaluate_all() noexcept {
@@ -60,15 +64,9 @@ class Search {
   int pick(std::span<Candidate> candidates) noexcept {
     int count = 0;
     for (int row = 0; row < places_.height; ++row) {
-      for (int column = 0; column < places_.width; ++column) {
-        if (!places_.is_place(column, row)) continue;
-        for (int sector = 0; sector < kSectorCount; ++sector) {
-          const Best best = best_at(column, row, sector);
-          if (best.angle_index < 0 || !is_local_minimum(column, row, best)) continue;
-          insert({best.cost, best.angle_index, cell_of(column), cell_of(row),
-                  static_cast<std::int16_t>(anchor_index_), Pose{}},
-                 candidates, count);
-        }
+      for (int column = 0; column < places_.padded_width; column += kBlockSize) {
+        if (lowest_cost(column, row) < room_below(candidates, count))
+          pick_of_block(column, row, candidates, count);
       }
     }
     for (Candidate& c : candidates.first(static_cast<std::size_t>(count))) finish(c);
@@ -122,6 +120,33 @@ class Search {
     search_block_for(config_.vector_path)(job);
   }
 
+  [[nodiscard]] std::int32_t lowest_cost(int first_column, int row) const noexcept {
+    const std::size_t first = places_.index(first_column, row);
+    std::array<std::uint8_t, kBlockSize> lowest;
+    lowest.fill(kCostMax);
+    for (const auto& cost : memory_.best_cost) {
+      const std::uint8_t* of_block = cost.data() + first;
+      for (int i = 0; i < kBlockSize; ++i) lowest[i] = std::min(lowest[i], of_block[i]);
+    }
+    return *std::min_element(lowest.begin(), lowest.end());
+  }
+
+  // Few places are cheap enough to be compared with their neighbours.
+  void pick_of_block(int first_column, int row, std::span<Candidate> candidates,
+                     int& count) const noexcept {
+    for (int column = first_column; column < first_column + kBlockSize; ++column) {
+      for (int sector = 0; sector < kSectorCount; ++sector) {
+        const Best best = best_at(column, row, sector);
+        if (best.angle_index < 0 || best.cost >= room_below(candidates, count) ||
+            !is_local_minimum(column, row, best))
+          continue;
+        insert({best.cost, best.angle_index, cell_of(column), cell_of(row),
+                static_cast<std::int16_t>(anchor_index_), Pose{}},
+               candidates, count);
+      }
+    }
+  }
+
   [[nodiscard]] Best best_at(int column, int row, int sector) const noexcept {
     const std::size_t i = places_.index(column, row);
     const std::uint8_t angle = memory_.best_angle[sector][i];
@@ -166,12 +191,16 @@ class Search {
     return a.angle_index < b.angle_index;
   }
 
+  /// The cost below which there is room for one more: of equal costs the earlier place keeps its
+  /// own.
+  static std::int32_t room_below(std::span<const Candidate> sorted, int count) noexcept {
+    if (count < static_cast<int>(sorted.size())) return kCostMax + 1;
+    return count > 0 ? sorted[count - 1].cost_q10 : 0;
+  }
+
+  /// Where there is room; the last of a full list gives way.
   static void insert(const Candidate& candidate, std::span<Candidate> sorted, int& count) noexcept {
-    const int capacity = static_cast<int>(sorted.size());
-    if (count == capacity) {
-      if (capacity == 0 || !precedes(candidate, sorted[count - 1])) return;
-      --count;
-    }
+    if (count == static_cast<int>(sorted.size())) --count;
     int at = count++;
     for (; at > 0 && precedes(candidate, sorted[at - 1]); --at) sorted[at] = sorted[at - 1];
     sorted[at] = candidate;
