@@ -159,10 +159,12 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
 // are narrower than any square. Sweeps down and up reach as far as the gap turns back twice.
 void lower_adjoining(ImageView<const std::uint8_t> marks, float drop_mm,
                      ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+  const auto is_lowered = [&](int x, int y) {
+    return missing.contains(x, y) && missing(x, y) == kDarkPit;
+  };
   const auto adjoin = [&](int x, int y, int dx, int dy) {
-    const bool beside = missing.contains(x + dx, y) && missing(x + dx, y) == kDarkPit;
-    const bool beyond = missing.contains(x, y + dy) && missing(x, y + dy) == kDarkPit;
-    if (marks(x, y) != kPit || missing(x, y) == kDarkPit || (!beside && !beyond)) return;
+    if (marks(x, y) != kPit || missing(x, y) == kDarkPit) return;
+    if (!is_lowered(x + dx, y) && !is_lowered(x, y + dy)) return;
     missing(x, y) = kDarkPit;
     filled_mm(x, y) -= drop_mm;
   };

@@ -16,6 +16,8 @@ namespace flatpose::locate {
 
 class Hold {
  public:
+  /// Of no contour at all: everything is held.
+  Hold() noexcept = default;
   explicit Hold(const model::Template& part) noexcept;
 
   /// Counts a contour point, confirmed by a share of 0 to 1.

@@ -113,6 +113,8 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.screen.height_tolerance_mm = s.wide.height_reach_mm;
   s.screen.contradiction_weight = 1.0;
   s.screen.use_landmarks = false;
+  s.screen.contour_count = 96;
+  s.screen.surface_count = 64;
   s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;
   s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;

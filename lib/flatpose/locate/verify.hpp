@@ -12,11 +12,14 @@
 namespace flatpose::locate {
 
 struct VerifyConfig {
+  int contour_count = model::kContourPointCountMax;  ///< Points that take part: the first, which
+  int surface_count = model::kSurfacePointCountMax;  ///< are spread well over the part.
   double surface_tolerance_mm = 1.0;  ///< A surface point this near to its height is confirmed.
   double height_tolerance_mm = 1.0;   ///< A single cell this near to its height may be there.
   double edge_tolerance_px =
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
-  bool use_landmarks = true;  ///< Every hole that can be seen must be there.
+  /// Holes that can be seen must be there, and the face and the hold of the contour are judged.
+  bool use_landmarks = true;
   /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.
   double contradiction_weight = 3.0;
 };

@@ -45,6 +45,23 @@ TEST(DarkPit, AGapBetweenLevelSidesIsLoweredAndNothingElse) {
   expect_lowered_where(dark_within(gap), [&](int x, int y) { return gap(x, y); });
 }
 
+TEST(DarkPit, NarrowTipsAreLoweredWithTheGapThatTheyAdjoin) {
+  // Three wide along rows and columns, but a square of three fits nowhere into it.
+  const auto band = [](double x, double y) {
+    return (std::fabs(x - y) < 1.5 && x > 14 && x < 60) ||
+           (std::fabs(x + y - 70) < 1.5 && x > 20 && x < 50);
+  };
+  const auto block = [](double x, double y) { return x > 29 && x < 41 && y > 29 && y < 41; };
+  const DarkMap alone =
+      dark_within([&](double x, double y) { return band(x, y) && x + y < 58 && x < y + 5; });
+  EXPECT_EQ(alone.pit_count(), 0);
+  const DarkMap map = dark_within([&](double x, double y) { return band(x, y) || block(x, y); });
+  for (const int k : {18, 25, 45, 56}) EXPECT_TRUE(map.is_pit(k, k)) << k;
+  for (const int x : {24, 27, 43, 46}) EXPECT_TRUE(map.is_pit(x, 70 - x)) << x;
+  EXPECT_FALSE(map.is_pit(12, 12));
+  EXPECT_FALSE(map.is_pit(30, 45));
+}
+
 TEST(DarkPit, AHoleWhollyDarkIsLowered) {
   for (const double radius : {4.0, 9.3, 20.0}) {
     const Shape hole = disc(41.2, 38.7, radius);
