@@ -53,7 +53,7 @@ struct BsplineWeights {
 /// Units: coordinates in cells, whole numbers at cell centres.  Cost: 16 pixels.
 /// Thread: reentrant.
 template <class Image>
-[[nodiscard]] Sample bspline_sample(const Image& image, double x, double y) noexcept {
+[[nodiscard]] inline Sample bspline_sample(const Image& image, double x, double y) noexcept {
   assert(image.width_px > 0 && image.height_px > 0);
   const ClampedCoordinate cx = clamp_coordinate(x, image.width_px);
   const ClampedCoordinate cy = clamp_coordinate(y, image.height_px);

@@ -23,10 +23,10 @@ struct Sample {
 
 /// `sample`, taken at (x, y), as a T with T's derivatives.
 template <class T>
-[[nodiscard]] T lift(const Sample& sample, const T& x, const T& y) noexcept {
+[[nodiscard]] inline T lift(const Sample& sample, const T& x, const T& y) noexcept {
   if constexpr (std::is_same_v<T, double>) return sample.value;
-  return T(sample.value) + T(sample.slope_x) * (x - T(scalar_part(x))) +
-         T(sample.slope_y) * (y - T(scalar_part(y)));
+  return sample.value + sample.slope_x * (x - scalar_part(x)) +
+         sample.slope_y * (y - scalar_part(y));
 }
 
 /// A coordinate held inside [0, size_px - 1], and whether it was inside. NaN becomes 0.

@@ -10,8 +10,10 @@
 // the variance where that is known), rho and omega those of RobustLoss. Everything is added in the
 // order of the calls: the same calls in the same order give the same bits.
 
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include "flatpose/autodiff/dual.hpp"
 #include "flatpose/refine/robust_loss.hpp"
@@ -37,6 +39,47 @@ class NormalEquations {
     const LossValue at = loss(residual);
     cost_ += weight * at.cost;
     add_weighted(residual, row, weight * at.weight);
+    ++residual_count_;
+  }
+
+  /// The same; `row_of()` is asked for the row only where the loss believes the residual, so that
+  /// a row that is not finite goes unnoticed elsewhere.
+  template <class RowOf>
+  void add_lazily(double residual, RowOf&& row_of, double weight, const RobustLoss& loss) noexcept {
+    const LossValue at = loss(residual);
+    cost_ += weight * at.cost;
+    ++residual_count_;
+    const double believed = weight * at.weight;
+    if (believed == 0.0) {
+      square_sum_ += believed * residual;  // NaN for an infinite one
+      return;
+    }
+    add_weighted(residual, row_of(), believed);
+  }
+
+  /// The same where only the parameters `kParameters`, in rising order, have derivatives.
+  template <int... kParameters>
+  void add_sparse(double residual, const std::array<double, sizeof...(kParameters)>& row,
+                  double weight, const RobustLoss& loss) noexcept {
+    constexpr std::array<int, sizeof...(kParameters)> at_index{kParameters...};
+    const LossValue at = loss(residual);
+    cost_ += weight * at.cost;
+    ++residual_count_;
+    const double believed = weight * at.weight;
+    const double weighted_residual = believed * residual;
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      gradient_[at_index[j]] += weighted_residual * row[j];
+      const double weighted = believed * row[j];
+      for (std::size_t i = j; i < row.size(); ++i)
+        hessian_lower_(at_index[i], at_index[j]) += weighted * row[i];
+    }
+    square_sum_ += weighted_residual * residual;
+    weight_sum_ += believed;
+  }
+
+  /// Adds a residual of which only that the loss rejects it is known, and what it costs.
+  void add_rejected(double cost) noexcept {
+    cost_ += cost;
     ++residual_count_;
   }
 
@@ -85,10 +128,11 @@ class NormalEquations {
   void add_weighted(double residual, const Vector<N>& row, double weight) noexcept {
     assert(!(weight < 0.0));
     const double weighted_residual = weight * residual;
+    for (int i = 0; i < N; ++i) gradient_[i] += weighted_residual * row[i];
     for (int j = 0; j < N; ++j) {
-      gradient_[j] += weighted_residual * row[j];
       const double weighted = weight * row[j];
-      for (int i = j; i < N; ++i) hessian_lower_(i, j) += weighted * row[i];
+      // From an even row on, so that pairs stay pairs; what is above the diagonal is never read.
+      for (int i = j & ~1; i < N; ++i) hessian_lower_(i, j) += weighted * row[i];
     }
     square_sum_ += weighted_residual * residual;
     weight_sum_ += weight;

@@ -9,37 +9,59 @@
 namespace flatpose::refine {
 namespace {
 
-using Number = autodiff::Dual<6>;
+// What is read off an image is a dual number over the place in it, (column, row). How the place
+// follows the six parameters is known in closed form, so a residual's row is one more step of the
+// chain rule: with q = R (p + h_r x p + h_t) + t and a residual whose gradient over q is g,
+//   (1)  g . dq = (R^T g) . (h_r x p + h_t) = (p x R^T g) . h_r + (R^T g) . h_t.
+// A normal n = R (m + h_r x m) adds n_x = n . e_x, likewise,
+//   (2)  e_x . dn = (m x R^T e_x) . h_r,     R^T e_x the first row of R.
+using Number = autodiff::Dual<2>;
 
-struct NumberVec3 {
-  Number x;
-  Number y;
-  Number z;
+struct Place {
+  double column;
+  double row;
 };
 
-NumberVec3 rotated(const Rotation& r, const NumberVec3& v) noexcept {
-  return {r.m[0] * v.x + r.m[1] * v.y + r.m[2] * v.z, r.m[3] * v.x + r.m[4] * v.y + r.m[5] * v.z,
-          r.m[6] * v.x + r.m[7] * v.y + r.m[8] * v.z};
+inline Place place(const rectify::Grid& grid, const Vec3& q_work_mm) noexcept {
+  return {(q_work_mm.x - grid.x0_mm) / grid.cell_mm, (q_work_mm.y - grid.y0_mm) / grid.cell_mm};
 }
 
-/// v + h_r x v, h_r being the first three parameters at zero.
-NumberVec3 turned(const Vec3& v) noexcept {
-  const Number rx = autodiff::seed<6>(0.0, 0);
-  const Number ry = autodiff::seed<6>(0.0, 1);
-  const Number rz = autodiff::seed<6>(0.0, 2);
-  return {v.x + ry * v.z - rz * v.y, v.y + rz * v.x - rx * v.z, v.z + rx * v.y - ry * v.x};
+inline Number read_at(const image::Sample& sample, const Place& at) noexcept {
+  return image::lift(sample, autodiff::seed<2>(at.column, 0), autodiff::seed<2>(at.row, 1));
 }
 
-NumberVec3 placed(const Pose& pose, const Vec3& p_object_mm) noexcept {
-  NumberVec3 p = turned(p_object_mm);
-  p.x += autodiff::seed<6>(0.0, 3);
-  p.y += autodiff::seed<6>(0.0, 4);
-  p.z += autodiff::seed<6>(0.0, 5);
-  NumberVec3 q = rotated(pose.rotation, p);
-  q.x += pose.position_mm.x;
-  q.y += pose.position_mm.y;
-  q.z += pose.position_mm.z;
-  return q;
+/// The turn and the shift of a row.
+struct Row {
+  Vec3 turn;
+  Vec3 shift;
+
+  operator Vector<6>() const noexcept {  // NOLINT: a row is a vector of six
+    Vector<6> row;
+    row << turn.x, turn.y, turn.z, shift.x, shift.y, shift.z;
+    return row;
+  }
+};
+
+/// Equation (1).
+inline Row row_of_point(const Rotation& r, const Vec3& p_object_mm, const Vec3& g) noexcept {
+  const Vec3 u{r.m[0] * g.x + r.m[3] * g.y + r.m[6] * g.z,
+               r.m[1] * g.x + r.m[4] * g.y + r.m[7] * g.z,
+               r.m[2] * g.x + r.m[5] * g.y + r.m[8] * g.z};
+  return {cross(p_object_mm, u), u};
+}
+
+/// The distance in the cell that the spline's pixels lie around.
+inline int distance_at(const BoundedDistance& distance, const Place& at) noexcept {
+  const double column = image::clamp_coordinate(at.column, distance.width_px).at;
+  const double row = image::clamp_coordinate(at.row, distance.height_px).at;
+  return distance(static_cast<int>(column), static_cast<int>(row));
+}
+
+/// Where the distance is as large as this, the spline is beyond the reach whatever it reads: its
+/// pixels are no more than two cells away, over which a chamfer distance falls by 8 at most.
+int surely_far_third_px(double reach_third_px) noexcept {
+  constexpr double kFallMax = 8.0;
+  return static_cast<int>(std::min(reach_third_px, 255.0) + kFallMax) + 2;
 }
 
 double squared_inverse(double sigma) noexcept { return 1.0 / (sigma * sigma); }
@@ -65,19 +87,31 @@ bool PoseProblem::evaluate(const Pose& pose, NormalEquations<6>* equations) cons
 
 void PoseProblem::add_contour(const Pose& pose, NormalEquations<6>* equations) const noexcept {
   const double third_mm = images_.grid.cell_mm / 3.0;
+  const double cells_per_mm = 1.0 / images_.grid.cell_mm;
   const double weight = squared_inverse(config_.edge_sigma_mm);
   const RobustLoss loss = RobustLoss::tukey(config_.edge_reach_mm);
+  const double rejected_cost = weight * loss(2.0 * config_.edge_reach_mm).cost;
+  const int far_third_px = surely_far_third_px(config_.edge_reach_mm / third_mm);
   const int count = std::min(config_.contour_count, part_.contour_count);
   for (int i = 0; i < count; ++i) {
     const model::ContourPoint& p = part_.contour[i];
-    const NumberVec3 q = placed(pose, {p.x_mm, p.y_mm, p.z_mm});
+    const Vec3 p_mm{p.x_mm, p.y_mm, p.z_mm};
+    const Vec3 q_mm = pose * p_mm;
     const Vec3 falling = pose.rotation * Vec3{p.nx, p.ny, 0.0};
     const int octant =
         image::octant_of(static_cast<float>(falling.x), static_cast<float>(falling.y));
-    const Number column = (q.x - images_.grid.x0_mm) / images_.grid.cell_mm;
-    const Number row = (q.y - images_.grid.y0_mm) / images_.grid.cell_mm;
     const BoundedDistance distance(images_, octant);
-    equations->add(image::bspline(distance, column, row) * third_mm, weight, loss);
+    const Place at = place(images_.grid, q_mm);
+    if (distance_at(distance, at) >= far_third_px) {
+      equations->add_rejected(rejected_cost);
+      continue;
+    }
+    const Number r = third_mm * read_at(image::bspline_sample(distance, at.column, at.row), at);
+    const auto row = [&]() -> Vector<6> {
+      return row_of_point(pose.rotation, p_mm,
+                          {r.derivative[0] * cells_per_mm, r.derivative[1] * cells_per_mm, 0.0});
+    };
+    equations->add_lazily(r.value, row, weight, loss);
   }
 }
 
@@ -88,21 +122,41 @@ void PoseProblem::add_surface(const Pose& pose, NormalEquations<6>* equations) c
   // What hides the part lies above it, and may lie on it: less of a height above is believed.
   const RobustLoss covering_loss = RobustLoss::tukey(config_.covering_reach_mm);
   const RobustLoss normal_loss = RobustLoss::tukey(config_.normal_reach);
+  const double cells_per_mm = 1.0 / images_.grid.cell_mm;
+  const Rotation& r = pose.rotation;
+  const Vec3 x_axis{r.m[0], r.m[1], r.m[2]};  // in the object's frame
+  const Vec3 y_axis{r.m[3], r.m[4], r.m[5]};
   const int count = std::min(config_.surface_count, part_.surface_count);
   for (int i = 0; i < count; ++i) {
     const model::SurfacePoint& p = part_.surface[i];
-    const NumberVec3 q = placed(pose, {p.x_mm, p.y_mm, p.z_mm});
-    const Number column = (q.x - images_.grid.x0_mm) / images_.grid.cell_mm;
-    const Number row = (q.y - images_.grid.y0_mm) / images_.grid.cell_mm;
-    const Number above_mm = image::bilinear(images_.filled_mm, column, row) - q.z;
-    equations->add(above_mm, height_weight, above_mm.value > 0.0 ? covering_loss : height_loss);
+    const Vec3 p_mm{p.x_mm, p.y_mm, p.z_mm};
+    const Vec3 q_mm = pose * p_mm;
+    const Place at = place(images_.grid, q_mm);
+    const image::BilinearPlace cell(at.column, at.row, images_.grid.width_px,
+                                    images_.grid.height_px);
+    const auto row = [&](const Number& read, double gz) {
+      return row_of_point(
+          r, p_mm, {read.derivative[0] * cells_per_mm, read.derivative[1] * cells_per_mm, gz});
+    };
+    const Number above_mm = read_at(cell(images_.filled_mm), at) - q_mm.z;
+    equations->add_lazily(
+        above_mm.value, [&]() -> Vector<6> { return row(above_mm, -1.0); }, height_weight,
+        above_mm.value > 0.0 ? covering_loss : height_loss);
+
     const double nz = std::sqrt(
         std::max(0.0, 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny));
-    const NumberVec3 n = rotated(pose.rotation, turned({p.nx, p.ny, nz}));
-    const ImageView<const float> normal_x = images_.normal_x;
-    const ImageView<const float> normal_y = images_.normal_y;
-    equations->add(image::bilinear(normal_x, column, row) - n.x, normal_weight, normal_loss);
-    equations->add(image::bilinear(normal_y, column, row) - n.y, normal_weight, normal_loss);
+    const Vec3 m{p.nx, p.ny, nz};
+    const auto add_normal = [&](ImageView<const float> image, const Vec3& axis) {
+      const Number off = read_at(cell(image), at) - dot(axis, m);
+      const auto row_of_normal = [&]() -> Vector<6> {
+        Row both = row(off, 0.0);
+        both.turn = both.turn - cross(m, axis);  // (2)
+        return both;
+      };
+      equations->add_lazily(off.value, row_of_normal, normal_weight, normal_loss);
+    };
+    add_normal(images_.normal_x, x_axis);
+    add_normal(images_.normal_y, y_axis);
   }
 }
 

@@ -76,6 +76,46 @@ Vector<N> random_vector(Random& random, double limit = 1.0) {
 
 // --- the parts ---------------------------------------------------------------------------------
 
+TEST(NormalEquations, SparseRowsAreRowsWithZeros) {
+  NormalEquations<6> full, sparse;
+  const RobustLoss loss = RobustLoss::tukey(1.0);
+  for (int k = 0; k < 20; ++k) {
+    const double residual = 0.15 * k - 1.4, a = 0.3 * k, b = 2.0 - k, c = 0.7;
+    Vector<6> row;
+    row << a, b, 0.0, 0.0, 0.0, c;
+    full.add(residual, row, 1.5, loss);
+    sparse.add_sparse<0, 1, 5>(residual, {a, b, c}, 1.5, loss);
+  }
+  EXPECT_EQ(full.cost(), sparse.cost());
+  EXPECT_EQ(full.square_sum(), sparse.square_sum());
+  EXPECT_EQ(full.weight_sum(), sparse.weight_sum());
+  EXPECT_EQ(full.residual_count(), sparse.residual_count());
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(full.gradient()[i], sparse.gradient()[i]) << i;
+    for (int j = 0; j < 6; ++j) EXPECT_EQ(full.hessian(i, j), sparse.hessian(i, j)) << i << j;
+  }
+}
+
+TEST(NormalEquations, RejectedResidualsCostAndHoldNothing) {
+  NormalEquations<2> told, seen;
+  const RobustLoss loss = RobustLoss::tukey(0.5);
+  told.add_rejected(3.0 * loss(1e3).cost);
+  seen.add_lazily(
+      7.0,
+      []() -> Vector<2> {
+        ADD_FAILURE() << "no row of a rejected residual is needed";
+        return Vector<2>::Zero();
+      },
+      3.0, loss);
+  EXPECT_EQ(told.cost(), seen.cost());
+  EXPECT_EQ(told.residual_count(), 1);
+  EXPECT_EQ(seen.residual_count(), 1);
+  EXPECT_EQ(seen.weight_sum(), 0.0);
+  EXPECT_TRUE(seen.is_finite());
+  seen.add(std::numeric_limits<double>::infinity(), Vector<2>::Zero(), 1.0, loss);
+  EXPECT_FALSE(seen.is_finite());
+}
+
 TEST(RobustLoss, WeightIsTheSlopeOfTheCostOverTheResidual) {
   for (const RobustLoss loss : {RobustLoss{}, RobustLoss::huber(0.7), RobustLoss::tukey(1.3)}) {
     for (double r = -2.003; r < 2.0; r += 0.01) {

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "flatpose/image/bspline.hpp"
 #include "tests/lib/locate/made_scan.hpp"
 #include "tests/lib/locate/simulated.hpp"
 
@@ -133,6 +135,34 @@ TEST(PoseProblem, HessianIsThatOfTheResidualsAtTheTruth) {
   EXPECT_EQ(equations.residual_count(), std::min(config.contour_count, part.contour_count) +
                                             3 * std::min(config.surface_count, part.surface_count));
   for (int i = 0; i < 6; ++i) EXPECT_GT(equations.hessian(i, i), 0.0) << i;
+}
+
+TEST(PoseProblem, ContourFarFromAnyEdgeCostsWhatTheSplineSays) {
+  // Most such points are told by one cell; the cost is that of sampling every one.
+  const MadeScene made(tilted_scan());
+  const model::Template part = test::rectangle_part(kWidth_mm, kHeight_mm, 12.0);
+  PoseProblemConfig config;
+  config.surface_count = 0;
+  Perturbation perturbation(11);
+  for (const double reach_mm : {1.0, 4.0, 10.0, 25.0}) {
+    config.edge_reach_mm = reach_mm;
+    const PoseProblem problem(part, made.fine, config);
+    const RobustLoss loss = RobustLoss::tukey(reach_mm);
+    for (int trial = 0; trial < 20; ++trial) {
+      const Pose pose = moved(kTruth, perturbation(0.1, 15.0));
+      double cost = 0.0;
+      for (int i = 0; i < std::min(config.contour_count, part.contour_count); ++i) {
+        const model::ContourPoint& p = part.contour[i];
+        const Vec3 q_mm = pose * Vec3{p.x_mm, p.y_mm, p.z_mm};
+        const Vec3 falling = pose.rotation * Vec3{p.nx, p.ny, 0.0};
+        const BoundedDistance distance(made.fine, image::octant_of(static_cast<float>(falling.x),
+                                                                   static_cast<float>(falling.y)));
+        const double third_px = image::bspline_sample(distance, q_mm.x, q_mm.y).value;
+        cost += loss(third_px / 3.0).cost / (config.edge_sigma_mm * config.edge_sigma_mm);
+      }
+      EXPECT_NEAR(cost_at(problem, pose), cost, 1e-9 * cost) << reach_mm << " " << trial;
+    }
+  }
 }
 
 TEST(PoseProblem, CostIsLeastNearTheTruth) {
