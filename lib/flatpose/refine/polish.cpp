@@ -58,8 +58,10 @@ class PolishProblem {
         crossings_(crossings) {}
 
   bool evaluate(const Vector<6>& h, NormalEquations<6>* equations) const noexcept {
-    visit_surface([&](double r, const Vec3& q, const Vec3& g) {
-      add(r, q, g, h, surface_weight_, surface_loss_, equations);
+    visit_surface([&](double r, double qx, double qy) {
+      // (1) with g = z: the turn about z and the shifts along x and y have no part in it.
+      equations->add_sparse<0, 1, 5>(moved_up(r, qx, qy, h), {-qy, qx, -1.0}, surface_weight_,
+                                     surface_loss_);
     });
     visit_contour([&](double r, const Vec3& q, const Vec3& g, double weight) {
       add(r, q, g, h, weight, contour_loss_, equations);
@@ -70,8 +72,8 @@ class PolishProblem {
 
   [[nodiscard]] Fit surface_fit(const Vector<6>& h) const noexcept {
     Fit fit;
-    visit_surface([&](double r, const Vec3& q, const Vec3& g) {
-      tally(moved(r, q, g, h), surface_loss_, &fit);
+    visit_surface([&](double r, double qx, double qy) {
+      tally(moved_up(r, qx, qy, h), surface_loss_, &fit);
     });
     return fit;
   }
@@ -86,6 +88,10 @@ class PolishProblem {
  private:
   static double moved(double r, const Vec3& q, const Vec3& g, const Vector<6>& h) noexcept {  // (1)
     return r - dot(cross(q, g), {h[0], h[1], h[2]}) - dot(g, {h[3], h[4], h[5]});
+  }
+
+  static double moved_up(double r, double qx, double qy, const Vector<6>& h) noexcept {  // g = z
+    return r - (qy * h[0] - qx * h[1]) - h[5];
   }
 
   static void add(double r, const Vec3& q, const Vec3& g, const Vector<6>& h, double weight,
@@ -117,14 +123,15 @@ class PolishProblem {
       const double nz2 = 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny;
       const double nz = std::sqrt(std::max(0.25, nz2));
       const Vec3 slope{p.nx / nz, p.ny / nz, 1.0};
-      for (int row = centre.row - radius_px_; row <= centre.row + radius_px_; ++row) {
-        for (int column = centre.column - radius_px_; column <= centre.column + radius_px_;
-             ++column) {
-          if (!raw_.scan.contains(column, row)) continue;
+      const Vec3 p_mm{p.x_mm, p.y_mm, p.z_mm};
+      const int row_end = std::min(centre.row + radius_px_ + 1, raw_.scan.height_px);
+      const int column_end = std::min(centre.column + radius_px_ + 1, raw_.scan.width_px);
+      for (int row = std::max(centre.row - radius_px_, 0); row < row_end; ++row) {
+        for (int column = std::max(centre.column - radius_px_, 0); column < column_end; ++column) {
           const Vec3 q_scan_mm = raw_.scan(column, row);
           if (!is_valid(q_scan_mm)) continue;
           const Vec3 q = object_T_scan_ * q_scan_mm;
-          visit(dot(slope, q - Vec3{p.x_mm, p.y_mm, p.z_mm}), q, Vec3{0, 0, 1});
+          visit(dot(slope, q - p_mm), q.x, q.y);
         }
       }
     }
