@@ -20,34 +20,46 @@ void set_rise(std::int32_t rise_unit, ShiftedPoint& p) noexcept {
 
 }  // namespace
 
+OffsetTable::OffsetTable(const Lattice& lattice) noexcept {
+  for (int d = -lattice.reach_px(); d <= lattice.reach_px(); ++d) {
+    of_columns_[d + kReachMax_px] = lattice.offset_bytes(d, 0);
+    of_rows_[d + kReachMax_px] = lattice.offset_bytes(0, d);
+  }
+}
+
 ShiftedTemplate shifted(const ProjectedTemplate& projected, const SearchImages& images) noexcept {
+  ShiftedTemplate t;
+  shift(projected, images, OffsetTable(images.lattice), t);
+  return t;
+}
+
+void shift(const ProjectedTemplate& projected, const SearchImages& images,
+           const OffsetTable& offsets, ShiftedTemplate& out) noexcept {
   const auto image_bytes = static_cast<std::int32_t>(images.lattice.image_bytes());
   const std::int32_t surface_image = SearchImages::kSurfaceImage * image_bytes;
-  ShiftedTemplate t;
-  t.contour_count = projected.contour_count;
-  t.surface_count = projected.surface_count;
-  t.edge_factor_q8 = projected.edge_factor_q8;
+  out.contour_count = projected.contour_count;
+  out.surface_count = projected.surface_count;
+  out.edge_factor_q8 = projected.edge_factor_q8;
   for (int i = 0; i < projected.contour_count; ++i) {
     const ProjectedTemplate::Contour& from = projected.contour[i];
-    const std::int32_t shift = images.lattice.offset_bytes(from.dx, from.dy);
+    const std::int32_t shift = offsets.offset_bytes(from.dx, from.dy);
     const std::int32_t octant = images.config.use_directions ? from.octant : 0;
-    t.contour[i].offset_bytes = octant * image_bytes + shift;
-    t.contour[i].second_offset_bytes = surface_image + shift;
-    set_rise(from.rise_unit, t.contour[i]);
+    out.contour[i].offset_bytes = octant * image_bytes + shift;
+    out.contour[i].second_offset_bytes = surface_image + shift;
+    set_rise(from.rise_unit, out.contour[i]);
   }
   for (int i = 0; i < projected.surface_count; ++i) {
     const ProjectedTemplate::Surface& from = projected.surface[i];
-    const std::int32_t shift = images.lattice.offset_bytes(from.dx, from.dy);
-    t.surface[i].offset_bytes = surface_image + shift;
-    t.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
+    const std::int32_t shift = offsets.offset_bytes(from.dx, from.dy);
+    out.surface[i].offset_bytes = surface_image + shift;
+    out.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
     if (images.config.use_height) {
-      set_rise(from.rise_unit, t.surface[i]);
+      set_rise(from.rise_unit, out.surface[i]);
     } else {
-      t.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
-      t.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);
+      out.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
+      out.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);
     }
   }
-  return t;
 }
 
 SearchBlock search_block_for(VectorPath path) noexcept {

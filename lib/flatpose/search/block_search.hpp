@@ -4,6 +4,7 @@
 // (score.hpp says of what). The loop is written once and compiled once for every vector width; each
 // form equals the scalar cost in every bit.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -36,6 +37,24 @@ struct ShiftedTemplate {
   std::array<ShiftedPoint, kSurfaceCountMax> surface;
 };
 
+/// Lattice::offset_bytes() of every shift that a template may have: the columns' part plus the
+/// rows'.
+class OffsetTable {
+ public:
+  explicit OffsetTable(const Lattice& lattice) noexcept;
+  /// Within the lattice's +-reach_px().
+  [[nodiscard]] std::int32_t offset_bytes(int dx, int dy) const noexcept {
+    return of_columns_[dx + kReachMax_px] + of_rows_[dy + kReachMax_px];
+  }
+
+ private:
+  std::array<std::int32_t, 2 * kReachMax_px + 1> of_columns_{};
+  std::array<std::int32_t, 2 * kReachMax_px + 1> of_rows_{};
+};
+
+/// `projected` as the loop takes it; `offsets` are those of the images' lattice.
+void shift(const ProjectedTemplate& projected, const SearchImages& images,
+           const OffsetTable& offsets, ShiftedTemplate& out) noexcept;
 [[nodiscard]] ShiftedTemplate shifted(const ProjectedTemplate& projected,
                                       const SearchImages& images) noexcept;
 

@@ -5,6 +5,7 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/image/pyramid.hpp"
+#include "flatpose/search/projector.hpp"
 
 namespace flatpose::search {
 namespace {
@@ -17,6 +18,7 @@ struct SearchMemory {
   std::array<std::span<std::uint8_t>, kSectorCount> best_cost;
   std::array<std::span<std::uint8_t>, kSectorCount> best_angle;
   std::span<ShiftedTemplate> angles;
+  std::span<Rotation> turns;  // by angle
 };
 
 SearchMemory take_search_memory(Arena& arena, std::size_t place_count) noexcept {
@@ -24,6 +26,7 @@ SearchMemory take_search_memory(Arena& arena, std::size_t place_count) noexcept 
   for (auto& cost : memory.best_cost) cost = arena.take<std::uint8_t>(place_count);
   for (auto& angle : memory.best_angle) angle = arena.take<std::uint8_t>(place_count);
   memory.angles = arena.take<ShiftedTemplate>(kAngleCountMax);
+  memory.turns = arena.take<Rotation>(kAngleCountMax);
   return memory;
 }
 
@@ -39,13 +42,17 @@ class Search {
         anchor_index_(anchor_index),
         config_(config),
         angle_range_rad_(angle_range_rad(part.symmetry, anchor_)),
-        angle_count_(angle_count(angle_range_rad_, config.angle_step_rad)) {}
+        angle_count_(angle_count(angle_range_rad_, config.angle_step_rad)),
+        projector_(part, anchor_, images, config.score, !images.config.use_height),
+        offsets_(images.lattice) {}
 
   bool take_memory(Arena& scratch) noexcept {
     memory_ = take_search_memory(scratch, places_.index(0, places_.height));
     if (scratch.failed()) return false;
     for (const auto& cost : memory_.best_cost) std::fill(cost.begin(), cost.end(), kCostMax);
     for (const auto& angle : memory_.best_angle) std::fill(angle.begin(), angle.end(), kNoAngle);
+    for (int angle = 0; angle < angle_count_; ++angle)
+      memory_.turns[angle] = rotation_about_z(angle_rad(angle));
     return true;
   }
 
@@ -89,12 +96,11 @@ class Search {
 
   // The template at all angles on the bin's plane; returns the cost below which hypotheses count.
   std::uint8_t turn_template(int bin) noexcept {
+    const Tilt tilt = tilt_of(slope_x_of_bin(bin), slope_y_of_bin(bin));
     std::int32_t worst = 0;
     for (int angle = 0; angle < angle_count_; ++angle) {
-      const ProjectedTemplate projected =
-          project(part_, anchor_, slope_x_of_bin(bin), slope_y_of_bin(bin), angle_rad(angle),
-                  images_, config_.score);
-      memory_.angles[angle] = shifted(projected, images_);
+      const ProjectedTemplate projected = projector_.at(tilt, memory_.turns[angle]);
+      shift(projected, images_, offsets_, memory_.angles[angle]);
       worst = std::max(worst, cost_max(images_, projected));
     }
     return static_cast<std::uint8_t>(
@@ -210,13 +216,13 @@ class Search {
   void finish(Candidate& c) const noexcept {
     const double sx = field_.slope_x(c.column, c.row);
     const double sy = field_.slope_y(c.column, c.row);
-    const Vec3 normal = normalized({-sx, -sy, 1.0});
-    const Rotation rotation = tilt_rotation(normal) * rotation_about_z(angle_rad(c.angle_index));
+    const Tilt tilt = tilt_of(sx, sy);
+    const Rotation& turn = memory_.turns[c.angle_index];
+    const Rotation rotation = tilt.rotation * turn;
     const Vec3 anchor_work_mm{images_.grid.x_of(c.column), images_.grid.y_of(c.row),
                               field_.plane_mm(c.column, c.row)};
     c.work_T_object = {rotation, anchor_work_mm - rotation * Vec3{anchor_.x_mm, anchor_.y_mm, 0.0}};
-    const ProjectedTemplate projected =
-        project(part_, anchor_, sx, sy, angle_rad(c.angle_index), images_, config_.score);
+    const ProjectedTemplate projected = projector_.at(tilt, turn);
     c.cost_q10 = c.cost_q10 * 1024 / std::max(1, cost_max(images_, projected));
   }
 
@@ -229,6 +235,8 @@ class Search {
   const GridSearchConfig& config_;
   double angle_range_rad_;
   int angle_count_;
+  Projector projector_;
+  OffsetTable offsets_;
   SearchMemory memory_;
 };
 

@@ -19,7 +19,8 @@ namespace flatpose::search {
 
 inline constexpr int kBlockSize = 64;  ///< Places evaluated together.
 inline constexpr int kStrideMax_px = 4;
-inline constexpr int kReachMax_px = 192;  ///< Template points farther from the anchor are left out.
+/// Template points farther from the anchor are left out. A multiple of every stride.
+inline constexpr int kReachMax_px = 192;
 
 struct Lattice {
   int stride_px = 1;

@@ -236,6 +236,20 @@ TEST(BlockSearchPaths, AreDifferentLoopsWhereTheBuildHasThem) {
   EXPECT_EQ(search_block_for(static_cast<VectorPath>(99)), search_block_for(VectorPath::kPortable));
 }
 
+TEST(BlockSearchOffsets, OfATableAreTheLattices) {
+  for (int stride_px = 1; stride_px <= kStrideMax_px; ++stride_px) {
+    for (const int reach_px : {1, 2, 5, 37, kReachMax_px - 1, kReachMax_px}) {
+      const Lattice lattice = make_lattice(131, 57, stride_px, reach_px);
+      const OffsetTable table(lattice);
+      ASSERT_LE(lattice.reach_px(), kReachMax_px);
+      for (int dy = -lattice.reach_px(); dy <= lattice.reach_px(); ++dy) {
+        for (int dx = -lattice.reach_px(); dx <= lattice.reach_px(); ++dx)
+          ASSERT_EQ(table.offset_bytes(dx, dy), lattice.offset_bytes(dx, dy)) << dx << ", " << dy;
+      }
+    }
+  }
+}
+
 TEST(BlockSearchSectors, ShareTheAnglesOutEvenlyAndInOrder) {
   for (int count = 1; count <= kSectorCount * kNoAngle; ++count) {
     EXPECT_EQ(sector_begin(0, count), 0);

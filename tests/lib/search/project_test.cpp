@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "flatpose/geometry/pose.hpp"
+#include "flatpose/image/edge.hpp"
 #include "flatpose/search/score.hpp"
 #include "tests/lib/search/made_parts.hpp"
 
@@ -222,6 +223,32 @@ TEST(Project, LeavesOutPointsTooFarForItsIntegersAndSaturatesHeights) {
       ASSERT_EQ(t.surface_count, 1) << far_mm;
       EXPECT_EQ(t.contour[0].rise_unit, sign * 32767);
       EXPECT_EQ(t.surface[0].rise_unit, sign * 32767);
+    }
+  }
+}
+
+TEST(Project, TakesTheOctantOfAnyDirectionAsTheEdgesDo) {
+  constexpr float kTanEighthOfPi = 0.41421356F;  // where octants meet
+  std::vector<float> components{0.0F, kTanEighthOfPi, 1.0F, 0.3F, 0.7F};
+  for (const float near : {kTanEighthOfPi, 1.0F}) {
+    components.push_back(std::nextafter(near, 0.0F));
+    components.push_back(std::nextafter(near, 2.0F));
+  }
+  for (std::size_t i = components.size(); i-- > 0;) components.push_back(-components[i]);
+  std::mt19937 random(11);
+  const SearchImages images = images_for(random, 1.0);
+  model::Template part;
+  part.anchor_count = 1;
+  part.contour_count = kContourCountMax;  // more than one vector
+  for (const float nx : components) {
+    for (const float ny : components) {
+      for (auto& p : part.contour) p.nx = ny, p.ny = nx;
+      part.contour[7].nx = nx;
+      part.contour[7].ny = ny;
+      const ScoreConfig all{kContourCountMax, 0};
+      const ProjectedTemplate t = project(part, part.anchors[0], 0.0, 0.0, 0.0, images, all);
+      ASSERT_EQ(t.contour[7].octant, image::octant_of(nx, ny)) << nx << ", " << ny;
+      ASSERT_EQ(t.contour[16].octant, image::octant_of(ny, nx)) << ny << ", " << nx;
     }
   }
 }
