@@ -48,8 +48,7 @@ class Pipeline {
     for (int anchor = 0; anchor < part_.anchor_count; ++anchor) {
       if (anchor > 0 && (has_enough() || is_late())) break;
       if (const Status s = search(anchor); s != Status::kOk) return s;
-      refine_all();
-      polish_best();
+      refine_and_polish();
     }
     accept();
     report();
@@ -149,20 +148,31 @@ class Pipeline {
     return Status::kOk;
   }
 
-  // Levenberg-Marquardt from every candidate; what comes to the same pose is kept once.
-  void refine_all() noexcept {
+  // Best candidates first, in rounds: when enough are beyond doubt, of the rest only those count
+  // that may turn out to be better in the place of one.
+  void refine_and_polish() noexcept {
+    constexpr int kRoundCount = 16;
+    bool is_enough = false;
+    for (int begin = 0; begin < candidate_count_ && !is_late(); begin += kRoundCount) {
+      refine(begin, std::min(begin + kRoundCount, candidate_count_), is_enough);
+      polish_best();
+      is_enough = has_enough();
+    }
+  }
+
+  // Levenberg-Marquardt from candidates; what comes to the same pose is kept once.
+  void refine(int begin, int end, bool only_rivals) noexcept {
     const refine::PoseProblem wide(part_, work_.fine, settings_.wide);
     const refine::PoseProblem narrow(part_, work_.fine, settings_.narrow);
     refine::LevenbergMarquardtConfig lm;
     lm.iteration_limit = 15;
     lm.step_tolerance = 1e-5;
     lm.cost_tolerance = 1e-5;
-    for (int i = 0; i < candidate_count_ && instance_count_ < kInstanceCountMax && !is_late();
-         ++i) {
+    for (int i = begin; i < end && instance_count_ < kInstanceCountMax && !is_late(); ++i) {
       // What lies on a part beyond doubt is that part; one that does not hold even loosely is not
       // worth its refinement.
       const Pose& start = work_.candidates[i].work_T_object;
-      if (is_explained(work_.candidates[i])) continue;
+      if (is_explained(work_.candidates[i]) || (only_rivals && !is_rival(start))) continue;
       if (verify(part_, work_.fine, {}, start, settings_.screen).score <
           kHopelessShare * settings_.score_threshold) {
         continue;
@@ -177,6 +187,15 @@ class Pipeline {
     }
     sort_instances();
     result_.timings.refine_us += lap();
+  }
+
+  // Whether a start lies in the place of a part beyond doubt.
+  [[nodiscard]] bool is_rival(const Pose& start) const noexcept {
+    for (int i = 0; i < instance_count_; ++i) {
+      const Instance& instance = work_.instances[i];
+      if (is_beyond_doubt(instance) && is_same_place(instance.work_T_object, start)) return true;
+    }
+    return false;
   }
 
   void sort_instances() noexcept {
@@ -211,7 +230,7 @@ class Pipeline {
       if (!is_beyond_doubt(work_.instances[i])) continue;
       bool is_new = true;
       for (int j = 0; j < i && is_new; ++j)
-        is_new = !is_same_place(work_.instances[j], work_.instances[i]);
+        is_new = !is_same_place(work_.instances[j].work_T_object, work_.instances[i].work_T_object);
       count += is_new ? 1 : 0;
     }
     return count >= config_.max_matches;
@@ -289,7 +308,8 @@ class Pipeline {
     if (!polish(work_.instances[index])) return false;
     int best = index;
     for (int i = index + 1; i < instance_count_; ++i) {
-      if (is_same_place(work_.instances[i], work_.instances[index]) && polish(work_.instances[i]) &&
+      if (is_same_place(work_.instances[i].work_T_object, work_.instances[index].work_T_object) &&
+          polish(work_.instances[i]) &&
           rank(work_.instances[i].verification) > rank(work_.instances[best].verification)) {
         best = i;
       }
@@ -313,15 +333,15 @@ class Pipeline {
   void close_place_of(const Instance& guess) noexcept {
     for (int i = 0; i < instance_count_; ++i) {
       Instance& instance = work_.instances[i];
-      if (rank(instance.verification) <= rank(guess.verification) && is_same_place(instance, guess))
+      if (rank(instance.verification) <= rank(guess.verification) &&
+          is_same_place(instance.work_T_object, guess.work_T_object))
         instance.is_open = false;
     }
   }
 
-  [[nodiscard]] bool is_same_place(const Instance& a, const Instance& b) const noexcept {
+  [[nodiscard]] bool is_same_place(const Pose& a, const Pose& b) const noexcept {
     constexpr double kShare = 0.3;
-    return norm(a.work_T_object.position_mm - b.work_T_object.position_mm) <
-           kShare * part_.radius_mm;
+    return norm(a.position_mm - b.position_mm) < kShare * part_.radius_mm;
   }
 
   /// Whether the instance is still in question; it is polished then.

@@ -200,7 +200,7 @@ void find_telltales(const Template& part, Landmarks& out) noexcept {
   const MirroredSelf mirrored(part);
   const Placement placement = mirrored.best();
   // Nearer than this, an edge a fraction of a cell off decides.
-  constexpr double kGapMin_px = 2.0;
+  constexpr double kGapMin_px = 1.5;
   const SinCos turn = sin_cos(placement.turn_rad);
   for (int i = 0; i < part.contour_count; ++i) {
     const ContourPoint& p = part.contour[i];
