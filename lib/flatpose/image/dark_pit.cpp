@@ -162,22 +162,25 @@ void lower_adjoining(ImageView<const std::uint8_t> marks, float drop_mm,
   const auto is_lowered = [&](int x, int y) {
     return missing.contains(x, y) && missing(x, y) == kDarkPit;
   };
+  bool has_grown = true;
   const auto adjoin = [&](int x, int y, int dx, int dy) {
     if (marks(x, y) != kPit || missing(x, y) == kDarkPit) return;
     if (!is_lowered(x + dx, y) && !is_lowered(x, y + dy)) return;
     missing(x, y) = kDarkPit;
     filled_mm(x, y) -= drop_mm;
+    has_grown = true;
   };
   constexpr int kRoundCount = 2;
-  for (int round = 0; round < kRoundCount; ++round) {
+  for (int round = 0; has_grown && round < kRoundCount; ++round) {
+    has_grown = false;
     for (int y = 0; y < missing.height_px; ++y) {
       if (!has_pits(marks, y)) continue;
-      for (int x = 0; x < missing.width_px; ++x) adjoin(x, y, -1, -1);
+      for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, -1); });
       for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, -1);
     }
     for (int y = missing.height_px - 1; y >= 0; --y) {
       if (!has_pits(marks, y)) continue;
-      for (int x = 0; x < missing.width_px; ++x) adjoin(x, y, -1, 1);
+      for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, 1); });
       for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, 1);
     }
   }

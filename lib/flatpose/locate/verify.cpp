@@ -43,7 +43,7 @@ constexpr double kWallShare = 0.75;
 
 PointVerdict judge_contour(const refine::FineImages& images, ImageView<const std::uint8_t> claimed,
                            const Vec3& p_mm, const Vec3& falling, const Vec3& probe_mm,
-                           const VerifyConfig& config) noexcept {
+                           double edge_tolerance_px, const VerifyConfig& config) noexcept {
   // What hides the contour covers most of the cells beside it; what confirms it may be one of them.
   const auto look_at = [&](const Vec3& beside_mm) {
     return look(images, beside_mm, config.surface_tolerance_mm, config.height_tolerance_mm);
@@ -59,7 +59,7 @@ PointVerdict judge_contour(const refine::FineImages& images, ImageView<const std
   const Sight outside = look_outside.nearest;
   if (inside == Sight::kNothing) return {};
   const double distance_px = edge_distance_px(images, p_mm, falling);
-  const double agreement = edge_agreement(distance_px, config.edge_tolerance_px);
+  const double agreement = edge_agreement(distance_px, edge_tolerance_px);
   // Another part adjoins here, and where two touch at one height there is no edge.
   if (agreement < 1.0 && is_claimed(images, claimed, p_mm + probe_mm)) return {};
   if (outside == Sight::kNothing && agreement == 0.0) return {};  // the scan ends or is dark here
@@ -171,12 +171,12 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
     // A side wall that leans toward the sensor draws the fall out over its own width, and where the
     // teach scan saw a ramp the place is as uncertain as that was.
-    VerifyConfig leaning = config;
-    leaning.edge_tolerance_px +=
+    double edge_tolerance_px = config.edge_tolerance_px;
+    edge_tolerance_px +=
         std::max(typical_mm, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
-    leaning.edge_tolerance_px +=
-        kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
-    return judge_contour(images, claimed, q_mm, falling, probe_mm * falling, leaning);
+    edge_tolerance_px += kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
+    return judge_contour(images, claimed, q_mm, falling, probe_mm * falling, edge_tolerance_px,
+                         config);
   };
 
   const SurfaceVerdict surface = judge_surface(part, images, claimed, work_T_object, config);
