@@ -25,8 +25,9 @@ Shot take_shot(const ShotConfig& config) {
 }
 
 locate::LocateResult Searcher::locate(const Shot& shot, const model::Template& part,
-                                      const locate::LocateConfig& config) {
-  const locate::Limits limits = tool::limits_for(shot.loaded.scan);
+                                      const locate::LocateConfig& config, VectorPath path) {
+  locate::Limits limits = tool::limits_for(shot.loaded.scan);
+  limits.vector_path = path;
   const std::size_t size_bytes = locate::Locator::required_bytes(limits);
   if (!memory_ || memory_->size_bytes() < size_bytes)
     memory_ = std::make_unique<tool::Memory>(size_bytes);

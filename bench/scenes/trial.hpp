@@ -10,6 +10,7 @@
 #include "bench/scenes/judge.hpp"
 #include "bench/scenes/lesson.hpp"
 #include "flatpose/locate/locator.hpp"
+#include "port/linux/cpu/vector_path.hpp"
 #include "port/linux/tool/engine.hpp"
 #include "port/linux/tool/loaded_scan.hpp"
 #include "port/sim/simulate.hpp"
@@ -40,7 +41,8 @@ class Searcher {
  public:
   /// Fails: std::runtime_error when locate() refuses.
   [[nodiscard]] locate::LocateResult locate(const Shot& shot, const model::Template& part,
-                                            const locate::LocateConfig& config);
+                                            const locate::LocateConfig& config,
+                                            VectorPath path = port::best_vector_path());
 
  private:
   std::unique_ptr<tool::Memory> memory_;

@@ -9,10 +9,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "bench/scenes/trial.hpp"
 #include "bench/speed/benches.hpp"
 #include "bench/speed/paths.hpp"
 #include "bench/speed/shots.hpp"
-#include "bench/speed/station.hpp"
 
 namespace flatpose::bench {
 namespace {
@@ -52,8 +52,9 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
                 int seed_count) {
   const std::vector<Shot>& shots = shots_of(scene, part_in(scene), size, seed_count);
   const model::Template& part = taught(part_in(scene)).part;
-  Station station;
-  benchmark::DoNotOptimize(station.locate(shots[0], part, {}, vector_paths().back().path));  // warm
+  Searcher searcher;
+  benchmark::DoNotOptimize(
+      searcher.locate(shots[0], part, {}, vector_paths().back().path));  // warm
   Samples samples;
   for (auto _ : state) {
     for (int i = 0; i < seed_count; ++i) {
@@ -61,7 +62,7 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
       samples["pass_us"].push_back(plain_pass_us(shot));
       std::uint64_t first_digest = 0;
       for (const NamedPath& path : vector_paths()) {
-        const locate::LocateResult result = station.locate(shot, part, {}, path.path);
+        const locate::LocateResult result = searcher.locate(shot, part, {}, path.path);
         note(result.timings, path.name, samples);
         const std::uint64_t digest = locate::digest(result);
         if (path.path == VectorPath::kPortable) first_digest = digest;

@@ -8,10 +8,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "bench/scenes/trial.hpp"
 #include "bench/speed/benches.hpp"
 #include "bench/speed/ground.hpp"
 #include "bench/speed/shots.hpp"
-#include "bench/speed/station.hpp"
 #include "port/linux/cpu/vector_path.hpp"
 
 namespace flatpose::bench {
@@ -43,9 +43,9 @@ void add(const std::string& sweep, double x, const std::function<Cost()>& run) {
 }
 
 Cost locate(const Shot& shot, const locate::LocateConfig& config) {
-  static Station station;
+  static Searcher searcher;
   const locate::LocateResult result =
-      station.locate(shot, taught(shot.part).part, config, port::best_vector_path());
+      searcher.locate(shot, taught(shot.part).part, config, port::best_vector_path());
   return {static_cast<double>(result.timings.search_us),
           static_cast<double>(result.timings.total_us)};
 }

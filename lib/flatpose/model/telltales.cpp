@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/model/landmarks.hpp"
@@ -68,11 +69,10 @@ class MirroredSelf {
   }
 
   /// How far off the mirrored contour is that falls the same way as the point, in cells.
-  [[nodiscard]] double gap_px(const Placement& placement, const ContourPoint& p) const noexcept {
-    const SinCos turn = sin_cos(placement.turn_rad);
+  [[nodiscard]] double gap_px(std::span<const Placed> mirrored,
+                              const ContourPoint& p) const noexcept {
     double gap_px = kFar_px;
-    for (const ContourPoint& other : part_.contour_points())
-      gap_px = std::min(gap_px, distance_px(p, placed(other, placement, turn)));
+    for (const Placed& q : mirrored) gap_px = std::min(gap_px, distance_px(p, q));
     return gap_px;
   }
 
@@ -202,14 +202,18 @@ void find_telltales(const Template& part, Landmarks& out) noexcept {
   // Nearer than this, an edge a fraction of a cell off decides.
   constexpr double kGapMin_px = 1.5;
   const SinCos turn = sin_cos(placement.turn_rad);
+  std::array<Placed, kContourPointCountMax> all;
+  for (int i = 0; i < part.contour_count; ++i)
+    all[i] = mirrored.placed(part.contour[i], placement, turn);
+  const auto placed = std::span<const Placed>(all).first(part.contour_points().size());
   for (int i = 0; i < part.contour_count; ++i) {
     const ContourPoint& p = part.contour[i];
-    const double gap_px = mirrored.gap_px(placement, p);
+    const double gap_px = mirrored.gap_px(placed, p);
     if (gap_px >= kGapMin_px) {
       out.telltale_gap_px[i] = static_cast<float>(gap_px);
       ++out.telltale_count;
     }
-    const Placed q = mirrored.placed(p, placement, turn);
+    const Placed& q = placed[i];
     const double mirrored_gap_px = mirrored.gap_of_mirrored_px(q);
     if (mirrored_gap_px < kGapMin_px || out.mirrored_count == kMirroredCountMax) continue;
     ContourPoint& shown = out.mirrored[out.mirrored_count];
