@@ -23,6 +23,9 @@ class InlineExecutor final : public Executor {
   }
 };
 
+/// Has no state: one serves all.
+inline constinit InlineExecutor callers_thread;
+
 /// Calls `body(chunk_index)` for every chunk.
 template <class Body>
 void for_each_chunk(Executor& executor, int chunk_count, Body& body) noexcept {

@@ -30,7 +30,7 @@ Status Locator::init(const Limits& limits, std::span<std::byte> memory) noexcept
 }
 
 Status Locator::locate(const model::Template& part, const RangeImageView& scan,
-                       const Frames& frames, const LocateConfig& config, const Clock& clock,
+                       const Frames& frames, const LocateConfig& config, const Host& host,
                        LocateResult& result) noexcept {
   result = LocateResult{};
   if (const Status s = validate(config); s != Status::kOk) return s;
@@ -38,7 +38,7 @@ Status Locator::locate(const model::Template& part, const RangeImageView& scan,
   if (scan.width_px > limits_.scan_width_px || scan.height_px > limits_.scan_height_px)
     return Status::kTooLarge;
   const ArenaScope scope(arena_);
-  return run_pipeline(part, scan, frames, config, limits_, clock, arena_, result);
+  return run_pipeline(part, scan, frames, config, limits_, host, arena_, result);
 }
 
 }  // namespace flatpose::locate

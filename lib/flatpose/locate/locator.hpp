@@ -13,7 +13,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/clock.hpp"
+#include "flatpose/core/host.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/frames.hpp"
@@ -106,7 +106,7 @@ class Locator {
   /// (scan or field beyond the limits), kNotFinite (an infinite or giant coordinate).  Thread: one
   /// at a time per locator.
   [[nodiscard]] Status locate(const model::Template& part, const RangeImageView& scan,
-                              const Frames& frames, const LocateConfig& config, const Clock& clock,
+                              const Frames& frames, const LocateConfig& config, const Host& host,
                               LocateResult& result) noexcept;
 
  private:

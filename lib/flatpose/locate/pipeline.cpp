@@ -20,23 +20,23 @@ constexpr double kHopelessShare = 0.6;
 class Pipeline {
  public:
   Pipeline(const model::Template& part, const RangeImageView& scan, const Frames& frames,
-           const LocateConfig& config, const Limits& limits, const Clock& clock, Arena& arena,
+           const LocateConfig& config, const Limits& limits, const Host& host, Arena& arena,
            LocateResult& result) noexcept
       : part_(part),
         scan_(scan),
         frames_(frames),
         config_(config),
         limits_(limits),
-        clock_(clock),
+        host_(host),
         arena_(arena),
         result_(result),
         acceptance_(part, frames, config, settings_, work_.fine, work_.claimed, result),
-        start_us_(clock.now_us()),
+        start_us_(host.clock.now_us()),
         lap_us_(start_us_) {}
 
   Status run() noexcept {
     const Status s = run_stages();
-    result_.timings.total_us = clock_.now_us() - start_us_;
+    result_.timings.total_us = host_.clock.now_us() - start_us_;
     result_.peak_bytes = arena_.peak_bytes();
     return s;
   }
@@ -382,11 +382,11 @@ class Pipeline {
   }
 
   [[nodiscard]] bool is_late() const noexcept {
-    return config_.deadline_us > 0 && clock_.now_us() - start_us_ >= config_.deadline_us;
+    return config_.deadline_us > 0 && host_.clock.now_us() - start_us_ >= config_.deadline_us;
   }
 
   std::int64_t lap() noexcept {
-    const std::int64_t now_us = clock_.now_us();
+    const std::int64_t now_us = host_.clock.now_us();
     const std::int64_t lap_us = now_us - lap_us_;
     lap_us_ = now_us;
     return lap_us;
@@ -397,7 +397,7 @@ class Pipeline {
   const Frames& frames_;
   const LocateConfig& config_;
   const Limits& limits_;
-  const Clock& clock_;
+  const Host& host_;
   Arena& arena_;
   LocateResult& result_;
   Settings settings_;
@@ -414,9 +414,9 @@ class Pipeline {
 }  // namespace
 
 Status run_pipeline(const model::Template& part, const RangeImageView& scan, const Frames& frames,
-                    const LocateConfig& config, const Limits& limits, const Clock& clock,
+                    const LocateConfig& config, const Limits& limits, const Host& host,
                     Arena& arena, LocateResult& result) noexcept {
-  return Pipeline(part, scan, frames, config, limits, clock, arena, result).run();
+  return Pipeline(part, scan, frames, config, limits, host, arena, result).run();
 }
 
 }  // namespace flatpose::locate

@@ -8,7 +8,7 @@ namespace flatpose::locate {
 /// Runs a validated search in the given arena. See Locator::locate.
 [[nodiscard]] Status run_pipeline(const model::Template& part, const RangeImageView& scan,
                                   const Frames& frames, const LocateConfig& config,
-                                  const Limits& limits, const Clock& clock, Arena& arena,
+                                  const Limits& limits, const Host& host, Arena& arena,
                                   LocateResult& result) noexcept;
 
 }  // namespace flatpose::locate

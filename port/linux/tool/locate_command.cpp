@@ -7,6 +7,7 @@
 #include "flatpose/locate/locator.hpp"
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/files/atomic_file.hpp"
+#include "port/linux/threads/worker_pool.hpp"
 #include "port/linux/tool/command.hpp"
 #include "port/linux/tool/engine.hpp"
 #include "port/linux/tool/loaded_scan.hpp"
@@ -68,8 +69,10 @@ ExitCode run(const Options& options, Report& report) {
   locate::LocateConfig config = options.config;
   config.deadline_us = static_cast<std::int64_t>(options.deadline_ms * 1000.0);
   const auto result = std::make_unique<locate::LocateResult>();
-  const Status status = locator.locate(*part, loaded.scan.view(), loaded.frames, config,
-                                       port::SteadyClock{}, *result);
+  const port::SteadyClock clock;
+  port::WorkerPool workers(options.threads);
+  const Status status =
+      locator.locate(*part, loaded.scan.view(), loaded.frames, config, {clock, workers}, *result);
   if (status != Status::kOk) fail(status, Doing::kLocate, options.scan_path);
 
   if (!options.overlay_path.empty()) draw(options, *part, loaded, *result);

@@ -86,8 +86,8 @@ struct Locating {
     EXPECT_EQ(locator.init(limits, memory), Status::kOk);
   }
   Status run(const model::Template& part, const RangeImageView& scan,
-             const locate::LocateConfig& config = {}, const Clock& clock = StoppedClock{}) {
-    return locator.locate(part, scan, frames_of_scan(true), config, clock, result);
+             const locate::LocateConfig& config = {}, const Host& host = StoppedClock{}) {
+    return locator.locate(part, scan, frames_of_scan(true), config, host, result);
   }
 };
 
