@@ -8,9 +8,7 @@ void whole_sums_avx2(const search::BlockJob& job) noexcept;
 void whole_sums_avx512(const search::BlockJob& job) noexcept;
 
 search::SearchBlock whole_sums_for(VectorPath path) noexcept {
-  if (path == VectorPath::kAvx2) return whole_sums_avx2;
-  if (path == VectorPath::kAvx512) return whole_sums_avx512;
-  return whole_sums_portable;
+  return FLATPOSE_FORM_FOR(path, whole_sums_portable, whole_sums_avx2, whole_sums_avx512);
 }
 #else
 search::SearchBlock whole_sums_for(VectorPath) noexcept { return nullptr; }

@@ -63,12 +63,7 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
 }
 
 SearchBlock search_block_for(VectorPath path) noexcept {
-#ifdef FLATPOSE_X86_PATHS
-  if (path == VectorPath::kAvx2) return search_block_avx2;
-  if (path == VectorPath::kAvx512) return search_block_avx512;
-#endif
-  (void)path;
-  return search_block_portable;
+  return FLATPOSE_FORM_FOR(path, search_block_portable, search_block_avx2, search_block_avx512);
 }
 
 }  // namespace flatpose::search

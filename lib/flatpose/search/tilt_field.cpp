@@ -99,12 +99,7 @@ class Fitter {
 }  // namespace
 
 const TiltKernels& tilt_kernels(VectorPath path) noexcept {
-#ifdef FLATPOSE_X86_PATHS
-  if (path == VectorPath::kAvx512) return kAvx512TiltKernels;
-  if (path == VectorPath::kAvx2) return kAvx2TiltKernels;
-#endif
-  (void)path;
-  return kPortableTiltKernels;
+  return FLATPOSE_FORM_FOR(path, kPortableTiltKernels, kAvx2TiltKernels, kAvx512TiltKernels);
 }
 
 TiltField take_tilt_field(Arena& arena, int width_px, int height_px) noexcept {

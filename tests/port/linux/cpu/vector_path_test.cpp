@@ -12,7 +12,9 @@
 namespace flatpose::port {
 namespace {
 
-/// The processor's flags by /proc/cpuinfo; none on an architecture that lists them otherwise.
+#if defined(__x86_64__)
+
+/// The processor's flags by /proc/cpuinfo.
 std::set<std::string> processor_flags() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -31,14 +33,16 @@ VectorPath expected_path(const std::set<std::string>& flags) {
 }
 
 TEST(VectorPath, IsTheWidestThatTheKernelLists) {
-#if !defined(__x86_64__)
-  EXPECT_EQ(best_vector_path(), VectorPath::kPortable);
-#else
   const std::set<std::string> flags = processor_flags();
   if (flags.empty()) GTEST_SKIP() << "no flags in /proc/cpuinfo";
   EXPECT_EQ(best_vector_path(), expected_path(flags));
-#endif
 }
+
+#elif defined(__aarch64__)
+
+TEST(VectorPath, IsNeonOnArm) { EXPECT_EQ(best_vector_path(), VectorPath::kNeon); }
+
+#endif
 
 TEST(VectorPath, IsTheSameEveryTime) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(best_vector_path(), best_vector_path());
