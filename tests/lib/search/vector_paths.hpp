@@ -15,6 +15,9 @@ inline std::vector<VectorPath> vector_paths() {
   return paths;
 }
 
+/// For counts that every path adds to.
+inline int path_count() { return static_cast<int>(vector_paths().size()); }
+
 inline void PrintTo(VectorPath path, std::ostream* out) {
   constexpr const char* kNames[] = {"Portable", "Avx2", "Avx512"};
   *out << kNames[static_cast<int>(path)];
