@@ -9,7 +9,7 @@ namespace flatpose::bench {
 BlockSums::BlockSums(const Ground& ground) : ground_(ground), angle_count_(ground.angle_count()) {
   for (int bin = 0; bin < search::kBinCount; ++bin) {
     const auto at = static_cast<std::size_t>(bin);
-    const Bin next{ground.places.bin_begin[at], ground.places.bin_begin[at + 1]};
+    const Bin next{ground.places.bin_begin[at], ground.places.bin_begin[at + 1], 0, {}, 0};
     if (next.begin == next.end) continue;
     bins_.push_back(next);
     turn_template(bin, bins_.back());
@@ -30,6 +30,8 @@ void BlockSums::turn_template(int bin_index, Bin& bin) {
     angles_.push_back(search::shifted(projected, ground_.images));
     worst = std::max(worst, search::cost_max(ground_.images, projected));
   }
+  bin.rises = search::rise_range(
+      {angles_.data() + bin.first_angle, static_cast<std::size_t>(angle_count_)});
   bin.cutoff = static_cast<std::uint8_t>(
       std::min(static_cast<std::int32_t>(worst * ground_.search.cost_share_max), search::kCostMax));
 }
@@ -42,6 +44,7 @@ void BlockSums::run(search::SearchBlock form) {
   job.surface_weight = static_cast<std::uint8_t>(ground_.images.surface_weight);
   for (const Bin& bin : bins_) {
     job.angles = {angles_.data() + bin.first_angle, static_cast<std::size_t>(angle_count_)};
+    job.rises = bin.rises;
     job.cutoff = bin.cutoff;
     for (int i = bin.begin; i < bin.end; ++i) {
       const search::PlaceBlock& block = places.blocks[static_cast<std::size_t>(i)];

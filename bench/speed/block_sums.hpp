@@ -28,6 +28,7 @@ class BlockSums {
     int begin = 0;  ///< Of its blocks.
     int end = 0;
     std::size_t first_angle = 0;
+    search::RiseRange rises;
     std::uint8_t cutoff = 0;
   };
   [[nodiscard]] std::size_t block_count() const;

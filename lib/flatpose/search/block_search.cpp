@@ -10,12 +10,8 @@ void search_block_avx512(const BlockJob& job) noexcept;
 
 namespace {
 
-// expected_unit() for a byte: clamp(place, low, high) + rise.
-void set_rise(std::int32_t rise_unit, ShiftedPoint& p) noexcept {
-  const std::int32_t rise = std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax);
-  p.low = static_cast<std::uint8_t>(std::max(0, -rise));
-  p.high = static_cast<std::uint8_t>(kHeightUnitMax - std::max(0, rise));
-  p.rise = static_cast<std::uint8_t>(rise);
+std::int16_t bounded_rise(std::int32_t rise_unit) noexcept {
+  return static_cast<std::int16_t>(std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax));
 }
 
 }  // namespace
@@ -46,7 +42,7 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     const std::int32_t octant = images.config.use_directions ? from.octant : 0;
     out.contour[i].offset_bytes = octant * image_bytes + shift;
     out.contour[i].second_offset_bytes = surface_image + shift;
-    set_rise(from.rise_unit, out.contour[i]);
+    out.contour[i].rise_unit = bounded_rise(from.rise_unit);
   }
   for (int i = 0; i < projected.surface_count; ++i) {
     const ProjectedTemplate::Surface& from = projected.surface[i];
@@ -54,12 +50,25 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     out.surface[i].offset_bytes = surface_image + shift;
     out.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
     if (images.config.use_height) {
-      set_rise(from.rise_unit, out.surface[i]);
+      out.surface[i].rise_unit = bounded_rise(from.rise_unit);
     } else {
       out.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
       out.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);
     }
   }
+}
+
+RiseRange rise_range(std::span<const ShiftedTemplate> angles) noexcept {
+  RiseRange range{kHeightUnitMax, -kHeightUnitMax};
+  const auto include = [&range](const ShiftedPoint& p) {
+    range.low_unit = std::min<std::int32_t>(range.low_unit, p.rise_unit);
+    range.high_unit = std::max<std::int32_t>(range.high_unit, p.rise_unit);
+  };
+  for (const ShiftedTemplate& t : angles) {
+    for (int i = 0; i < t.contour_count; ++i) include(t.contour[i]);
+    for (int i = 0; i < t.surface_count; ++i) include(t.surface[i]);
+  }
+  return range.low_unit <= range.high_unit ? range : RiseRange{};
 }
 
 SearchBlock search_block_for(VectorPath path) noexcept {

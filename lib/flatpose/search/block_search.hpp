@@ -23,10 +23,15 @@ inline constexpr std::uint8_t kNoAngle = 255;
 struct ShiftedPoint {
   std::int32_t offset_bytes = 0;         ///< To its edge, height or normal's x image.
   std::int32_t second_offset_bytes = 0;  ///< To its height (contour), normal's y (surface).
-  // expected = clamp(place, low, high) + rise, modulo 256: expected_unit() without overflow.
-  std::uint8_t low = 0;  ///< Normals: the expected x and y.
+  std::int16_t rise_unit = 0;            ///< Within +-kHeightUnitMax.
+  std::uint8_t low = 0;                  ///< Normals: the expected x and y.
   std::uint8_t high = 0;
-  std::uint8_t rise = 0;
+};
+
+/// All rises of some templates' points lie in it.
+struct RiseRange {
+  std::int32_t low_unit = -kHeightUnitMax;
+  std::int32_t high_unit = kHeightUnitMax;
 };
 
 struct ShiftedTemplate {
@@ -58,18 +63,22 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
 [[nodiscard]] ShiftedTemplate shifted(const ProjectedTemplate& projected,
                                       const SearchImages& images) noexcept;
 
+/// Of all points of all angles; of none the widest.
+[[nodiscard]] RiseRange rise_range(std::span<const ShiftedTemplate> angles) noexcept;
+
 struct BlockJob {
   const std::uint8_t* image_bytes = nullptr;  ///< Of the block's first place, first image.
   const std::uint8_t* place_unit = nullptr;   ///< Heights of the block's places.
   const std::uint16_t* bin = nullptr;         ///< Of the block's places.
   std::uint16_t wanted_bin = 0;               ///< Only its places are written to.
   std::span<const ShiftedTemplate> angles;    ///< At most kSectorCount x kNoAngle.
+  RiseRange rises;                            ///< Of `angles`, or wider; wide ones cost time.
   bool use_height = true;
   std::uint8_t surface_cap = 0;
   std::uint8_t surface_weight = 1;
   std::uint8_t cutoff = 0;  ///< Only costs below it count.
   /// By sector: the lowest cost of every place, and the angle within the sector, kNoAngle for none.
-  /// Of equal costs the first angle's.
+  /// Of equal costs the first angle's. Of a sector without angles nothing is written.
   std::array<std::uint8_t*, kSectorCount> best_cost{};
   std::array<std::uint8_t*, kSectorCount> best_angle{};
 };

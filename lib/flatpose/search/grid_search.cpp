@@ -103,6 +103,7 @@ class Search {
       shift(projected, images_, offsets_, memory_.angles[angle]);
       worst = std::max(worst, cost_max(images_, projected));
     }
+    rises_ = rise_range(memory_.angles.first(static_cast<std::size_t>(angle_count_)));
     return static_cast<std::uint8_t>(
         std::min(static_cast<std::int32_t>(worst * config_.cost_share_max), kCostMax));
   }
@@ -115,6 +116,7 @@ class Search {
     job.bin = places_.bin.data() + first;
     job.wanted_bin = block.bin;
     job.angles = memory_.angles.first(static_cast<std::size_t>(angle_count_));
+    job.rises = rises_;
     job.use_height = images_.config.use_height;
     job.surface_cap = static_cast<std::uint8_t>(images_.surface_cap);
     job.surface_weight = static_cast<std::uint8_t>(images_.surface_weight);
@@ -237,6 +239,7 @@ class Search {
   int angle_count_;
   Projector projector_;
   OffsetTable offsets_;
+  RiseRange rises_;  // of the angles turned last
   SearchMemory memory_;
 };
 

@@ -144,7 +144,8 @@ TEST_P(BlockSearch, CountsOnlyCostsBelowTheCutoff) {
     const BlockBest best =
         fast_block(made.images, block, all_shifted(angles, made.images), GetParam());
     for (const std::uint8_t angle : best.angle[0]) EXPECT_EQ(angle, cutoff > 15 ? 0 : kNoAngle);
-    for (const std::uint8_t angle : best.angle[3]) EXPECT_EQ(angle, kNoAngle) << "no angle there";
+    for (const std::uint8_t angle : best.angle[3])
+      EXPECT_EQ(angle, BlockBest::kUntouched) << "no angle there";
   }
 }
 

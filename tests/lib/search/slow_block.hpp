@@ -47,6 +47,7 @@ inline BlockBest fast_block(const SearchImages& images, const Block& block,
   job.use_height = images.config.use_height;
   job.surface_cap = static_cast<std::uint8_t>(images.surface_cap);
   job.surface_weight = static_cast<std::uint8_t>(images.surface_weight);
+  job.rises = rise_range(angles);
   job.cutoff = block.cutoff;
   for (std::size_t sector = 0; sector < kSectorCount; ++sector) {
     job.best_cost[sector] = best.cost[sector].data();
@@ -67,6 +68,7 @@ inline BlockBest slow_block(const SearchImages& images, const Block& block,
     const int y = block.row * stride_px;
     for (int sector = 0; sector < kSectorCount; ++sector) {
       const int begin = sector_begin(sector, angle_count);
+      if (begin == sector_begin(sector + 1, angle_count)) continue;
       std::int32_t lowest = block.cutoff;
       std::uint8_t at = kNoAngle;
       for (int angle = begin; angle < sector_begin(sector + 1, angle_count); ++angle) {
