@@ -13,6 +13,8 @@
 #endif
 #if FLATPOSE_LANES > 4 || defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 namespace flatpose::rectify {
@@ -96,6 +98,9 @@ inline unsigned bits(Ints mask) noexcept {
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
 #elif defined(__SSE2__)
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#elif defined(__aarch64__)
+  constexpr Ints kBits = {1, 2, 4, 8};
+  return vaddvq_u32(reinterpret_cast<uint32x4_t>(mask & kBits));
 #else
   return (mask[0] & 1U) | (mask[1] & 2U) | (mask[2] & 4U) | (mask[3] & 8U);
 #endif
