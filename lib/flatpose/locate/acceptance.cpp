@@ -21,7 +21,7 @@ void Acceptance::note_rejected(double score) noexcept {
 
 Verdict Acceptance::consider(const refine::PolishResult& polished) noexcept {
   const Pose& pose = polished.work_T_object;
-  const Verification v = verify(part_, fine_, claimed_, pose, settings_.verify);
+  const Verification v = verifier_.verify(fine_, claimed_, pose, settings_.verify);
   if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
     note_rival(v.score, pose);
     return Verdict::kNoMatch;

@@ -24,12 +24,13 @@ class Acceptance {
  public:
   /// What is referred to must outlive the acceptance; images may still be empty here.
   Acceptance(const model::Template& part, const Frames& frames, const LocateConfig& config,
-             const Settings& settings, const refine::FineImages& fine,
+             const Settings& settings, const Verifier& verifier, const refine::FineImages& fine,
              const ImageView<std::uint8_t>& claimed, LocateResult& result) noexcept
       : part_(part),
         frames_(frames),
         config_(config),
         settings_(settings),
+        verifier_(verifier),
         fine_(fine),
         claimed_(claimed),
         result_(result) {}
@@ -60,6 +61,7 @@ class Acceptance {
   const Frames& frames_;
   const LocateConfig& config_;
   const Settings& settings_;
+  const Verifier& verifier_;
   const refine::FineImages& fine_;
   const ImageView<std::uint8_t>& claimed_;
   LocateResult& result_;

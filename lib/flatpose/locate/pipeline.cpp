@@ -5,6 +5,8 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/locate/acceptance.hpp"
+#include "flatpose/locate/pose_set.hpp"
+#include "flatpose/locate/refinement.hpp"
 #include "flatpose/locate/settings.hpp"
 #include "flatpose/locate/workspace.hpp"
 #include "flatpose/rectify/survey.hpp"
@@ -14,8 +16,10 @@ namespace {
 
 // Below this share of valid points a scan says nothing about what is there.
 constexpr double kValidShareMin = 0.02;
-// What is this far below the threshold does not rise above it any more.
-constexpr double kHopelessShare = 0.6;
+// Candidates that are refined before it is asked whether there are enough.
+constexpr int kRoundCount = 4;
+// No polish makes so much of a pose.
+constexpr double kPolishGain = 0.3;
 /// One search from scan to result. Lives on the stack of locate().
 class Pipeline {
  public:
@@ -30,7 +34,9 @@ class Pipeline {
         host_(host),
         arena_(arena),
         result_(result),
-        acceptance_(part, frames, config, settings_, work_.fine, work_.claimed, result),
+        verifier_(part),
+        refinement_(part, work_.fine, settings_, verifier_),
+        acceptance_(part, frames, config, settings_, verifier_, work_.fine, work_.claimed, result),
         start_us_(host.clock.now_us()),
         lap_us_(start_us_) {}
 
@@ -75,6 +81,7 @@ class Pipeline {
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
     settings_.search.vector_path = limits_.vector_path;
     settings_.scene.vector_path = limits_.vector_path;
+    settings_.polish.vector_path = limits_.vector_path;
     const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
     result_.timings.rectify_us = lap();
     if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
@@ -109,6 +116,10 @@ class Pipeline {
   Status build_images() noexcept {
     work_ = take_workspace(arena_, scene_.map.grid);
     if (arena_.failed()) return Status::kOutOfMemory;
+    // Starts that are no farther apart than the search's steps lead to the same pose.
+    const double place_step_mm = settings_.places.stride_px * work_.coarse.grid.cell_mm;
+    instances_ = work_.instances;
+    tried_ = PoseSet(work_.starts, place_step_mm, settings_.search.angle_step_rad);
     Status s = refine::build_fine_images(scene_, work_.fine);
     if (s != Status::kOk) return s;
     s = build_coarse_images();
@@ -151,7 +162,6 @@ class Pipeline {
   // Best candidates first, in rounds: when enough are beyond doubt, of the rest only those count
   // that may turn out to be better in the place of one.
   void refine_and_polish() noexcept {
-    constexpr int kRoundCount = 16;
     bool is_enough = false;
     for (int begin = 0; begin < candidate_count_ && !is_late(); begin += kRoundCount) {
       refine(begin, std::min(begin + kRoundCount, candidate_count_), is_enough);
@@ -160,46 +170,42 @@ class Pipeline {
     }
   }
 
-  // Levenberg-Marquardt from candidates; what comes to the same pose is kept once.
+  // What comes to the same pose is kept once.
   void refine(int begin, int end, bool only_rivals) noexcept {
-    const refine::PoseProblem wide(part_, work_.fine, settings_.wide);
-    const refine::PoseProblem narrow(part_, work_.fine, settings_.narrow);
-    refine::LevenbergMarquardtConfig lm;
-    lm.iteration_limit = 15;
-    lm.step_tolerance = 1e-5;
-    lm.cost_tolerance = 1e-5;
-    for (int i = begin; i < end && instance_count_ < kInstanceCountMax && !is_late(); ++i) {
-      // What lies on a part beyond doubt is that part; one that does not hold even loosely is not
-      // worth its refinement.
+    std::array<Pose, kRoundCount> starts;
+    int count = 0;
+    for (int i = begin; i < end; ++i) {
       const Pose& start = work_.candidates[i].work_T_object;
-      if (is_explained(work_.candidates[i]) || (only_rivals && !is_rival(start))) continue;
-      if (verify(part_, work_.fine, {}, start, settings_.screen).score <
-          kHopelessShare * settings_.score_threshold) {
+      // What lies on a part beyond doubt is that part.
+      if (is_explained(work_.candidates[i]) || (only_rivals && !is_rival(start)) ||
+          tried_.contains(start))
         continue;
-      }
-      const auto first = refine::minimize<6>(wide, start, lm);
-      const auto second = refine::minimize<6>(narrow, first.x, lm);
-      if (is_known(second.x)) continue;
-      Instance& instance = work_.instances[instance_count_++];
-      instance = Instance{};
-      instance.work_T_object = second.x;
-      instance.verification = verify(part_, work_.fine, {}, second.x, settings_.verify);
+      starts[count++] = start;
     }
-    sort_instances();
+    std::array<Refined, kRoundCount> refined;
+    auto refine_one = [&](int i) { refined[i] = refinement_(starts[i]); };
+    for_each_chunk(host_.executor, count, refine_one);
+    const double near_mm = 2.0 * scene_.map.grid.cell_mm;
+    for (int i = 0; i < count; ++i) {
+      if (!refined[i].is_moved) continue;
+      const Pose& pose = refined[i].work_T_object;
+      tried_.add(starts[i]);
+      tried_.add(pose);
+      if (refined[i].is_found && !instances_.is_full() &&
+          !instances_.contains(pose, near_mm, part_.radius_mm))
+        instances_.add(pose, refined[i].verification);
+    }
+    instances_.sort();
     result_.timings.refine_us += lap();
   }
 
   // Whether a start lies in the place of a part beyond doubt.
   [[nodiscard]] bool is_rival(const Pose& start) const noexcept {
-    for (int i = 0; i < instance_count_; ++i) {
-      const Instance& instance = work_.instances[i];
+    for (int i = 0; i < instances_.count(); ++i) {
+      const Instance& instance = instances_[i];
       if (is_beyond_doubt(instance) && is_same_place(instance.work_T_object, start)) return true;
     }
     return false;
-  }
-
-  void sort_instances() noexcept {
-    std::sort(work_.instances.begin(), work_.instances.begin() + instance_count_, precedes);
   }
 
   // The last step for those likely to be asked for: what they are worth on the raw points decides
@@ -207,9 +213,11 @@ class Pipeline {
   void polish_best() noexcept {
     const int wanted = 6 + 2 * config_.max_matches;
     int count = 0;
-    for (int i = 0; i < instance_count_ && count < wanted && !is_late(); ++i)
-      count += polish(work_.instances[i]) ? 1 : 0;
-    sort_instances();
+    for (int i = 0; i < instances_.count() && count < wanted && !is_late(); ++i) {
+      if (has_enough()) break;
+      count += polish(instances_[i]) ? 1 : 0;
+    }
+    instances_.sort();
     result_.timings.verify_us += lap();
   }
 
@@ -226,11 +234,11 @@ class Pipeline {
   // are not searched then.
   [[nodiscard]] bool has_enough() const noexcept {
     int count = 0;
-    for (int i = 0; i < instance_count_; ++i) {
-      if (!is_beyond_doubt(work_.instances[i])) continue;
+    for (int i = 0; i < instances_.count(); ++i) {
+      if (!is_beyond_doubt(instances_[i])) continue;
       bool is_new = true;
       for (int j = 0; j < i && is_new; ++j)
-        is_new = !is_same_place(work_.instances[j].work_T_object, work_.instances[i].work_T_object);
+        is_new = !is_same_place(instances_[j].work_T_object, instances_[i].work_T_object);
       count += is_new ? 1 : 0;
     }
     return count >= config_.max_matches;
@@ -242,8 +250,8 @@ class Pipeline {
     if (candidate.anchor == 0) return false;
     const model::Anchor& anchor = part_.anchors[candidate.anchor];
     const Vec3 p_work_mm = candidate.work_T_object * Vec3{anchor.x_mm, anchor.y_mm, 0.0};
-    for (int i = 0; i < instance_count_; ++i) {
-      const Instance& instance = work_.instances[i];
+    for (int i = 0; i < instances_.count(); ++i) {
+      const Instance& instance = instances_[i];
       if (is_beyond_doubt(instance) &&
           is_on_surface(instance.polished.work_T_object.inverse() * p_work_mm)) {
         return true;
@@ -264,30 +272,6 @@ class Pipeline {
     return false;
   }
 
-  [[nodiscard]] bool is_known(const Pose& pose) const noexcept {
-    const double near_mm = 2.0 * scene_.map.grid.cell_mm;
-    for (int i = 0; i < instance_count_; ++i) {
-      const Pose& other = work_.instances[i].work_T_object;
-      const bool near =
-          norm(other.position_mm - pose.position_mm) < near_mm &&
-          angle_between_rad(other.rotation, pose.rotation) * part_.radius_mm < near_mm;
-      if (near) return true;
-    }
-    return false;
-  }
-
-  static double rank(const Verification& v) noexcept { return v.score * v.visible; }
-
-  static bool precedes(const Instance& a, const Instance& b) noexcept {
-    if (rank(a.verification) != rank(b.verification))
-      return rank(a.verification) > rank(b.verification);
-    const Vec3& p = a.work_T_object.position_mm;
-    const Vec3& q = b.work_T_object.position_mm;
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    return a.work_T_object.rotation.m < b.work_T_object.rotation.m;
-  }
-
   // The last step on the raw points, and the verdict, best first. A match explains why the contour
   // of a part that adjoins it cannot be seen there, so those left are looked at again while there
   // are new ones.
@@ -296,7 +280,7 @@ class Pipeline {
     bool has_new = true;
     for (int round = 0; has_new && round < kRoundsMax; ++round) {
       has_new = false;
-      for (int i = 0; i < instance_count_ && !acceptance_.is_full() && !is_late(); ++i)
+      for (int i = 0; i < instances_.count() && !acceptance_.is_full() && !is_late(); ++i)
         has_new |= consider(i);
     }
     result_.timings.verify_us += lap();
@@ -305,18 +289,18 @@ class Pipeline {
   // Of the poses in the place of the next, the one that is best on the raw points: a part that is
   // nearly symmetric is often told from its turned self by these alone.
   bool consider(int index) noexcept {
-    if (!polish(work_.instances[index])) return false;
+    if (!polish(instances_[index])) return false;
     int best = index;
-    for (int i = index + 1; i < instance_count_; ++i) {
-      if (is_same_place(work_.instances[i].work_T_object, work_.instances[index].work_T_object) &&
-          polish(work_.instances[i]) &&
-          rank(work_.instances[i].verification) > rank(work_.instances[best].verification)) {
+    for (int i = index + 1; i < instances_.count(); ++i) {
+      if (is_same_place(instances_[i].work_T_object, instances_[index].work_T_object) &&
+          instances_[i].rank() + kPolishGain > instances_[best].rank() && polish(instances_[i]) &&
+          instances_[i].rank() > instances_[best].rank()) {
         best = i;
       }
     }
     bool has_new = false;
     for (const int i : {best, index}) {
-      Instance& instance = work_.instances[i];
+      Instance& instance = instances_[i];
       if (!instance.is_open) continue;
       const Verdict verdict = acceptance_.consider(instance.polished);
       if (verdict == Verdict::kGuess) {
@@ -331,9 +315,9 @@ class Pipeline {
 
   // Where the best that fits is a guess, what fits less is none the better.
   void close_place_of(const Instance& guess) noexcept {
-    for (int i = 0; i < instance_count_; ++i) {
-      Instance& instance = work_.instances[i];
-      if (rank(instance.verification) <= rank(guess.verification) &&
+    for (int i = 0; i < instances_.count(); ++i) {
+      Instance& instance = instances_[i];
+      if (instance.rank() <= guess.rank() &&
           is_same_place(instance.work_T_object, guess.work_T_object))
         instance.is_open = false;
     }
@@ -354,13 +338,13 @@ class Pipeline {
     }
     const refine::RawScan raw{scan_, frames_.work_T_scan, &scene_.map};
     const Result<refine::PolishResult> polished =
-        refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.crossings);
+        refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.polish[0]);
     instance.is_open = polished.status() == Status::kOk;
     if (!instance.is_open) return false;
     instance.polished = *polished;
     instance.is_polished = true;
     instance.verification =
-        verify(part_, work_.fine, {}, polished->work_T_object, settings_.verify);
+        verifier_.verify(work_.fine, {}, polished->work_T_object, settings_.verify);
     return true;
   }
 
@@ -403,9 +387,12 @@ class Pipeline {
   Settings settings_;
   scene::Scene scene_;
   Workspace work_;
+  Verifier verifier_;
+  Refinement refinement_;
   Acceptance acceptance_;
+  Instances instances_;
+  PoseSet tried_;
   int candidate_count_ = 0;
-  int instance_count_ = 0;
   bool is_over_ = false;
   std::int64_t start_us_;
   std::int64_t lap_us_;

@@ -100,6 +100,9 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.wide.height_sigma_mm = std::max(noise_mm, 0.2 * cell_mm);
   s.wide.normal_sigma = bounded(noise_mm / cell_mm, 0.1, 0.5);
   s.narrow = s.wide;
+  // From afar a few points are as good as many.
+  s.wide.contour_count = 64;
+  s.wide.surface_count = 32;
   s.narrow.edge_reach_mm = 4.0 * cell_mm;
   s.narrow.covering_reach_mm = 1.1 * surface_tolerance_mm;
   s.narrow.height_reach_mm = 1.5 * surface_tolerance_mm;
@@ -116,6 +119,10 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.screen.contour_count = 96;
   s.screen.surface_count = 64;
   s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;
+  s.near = s.screen;
+  s.near.surface_tolerance_mm = surface_tolerance_mm;
+  s.near.height_tolerance_mm = height_tolerance_mm;
+  s.near.edge_tolerance_px = s.verify.edge_tolerance_px;
   s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;
 }

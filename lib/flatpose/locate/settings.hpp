@@ -21,6 +21,7 @@ struct Settings {
   refine::PoseProblemConfig narrow;  ///< Second: what is near already.
   refine::PolishConfig polish;
   VerifyConfig screen;  ///< A loose look at a candidate before it is refined.
+  VerifyConfig near;    ///< A quick one after the first refinement.
   VerifyConfig verify;
   double score_threshold = 0.0;
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "flatpose/locate/hold.hpp"
 #include "flatpose/locate/landmark_tally.hpp"
 #include "flatpose/locate/sight.hpp"
 
@@ -77,39 +76,6 @@ double surface_agreement(double confirmed_share, double contradiction_weight) no
   return std::max(0.0, 1.0 - contradiction_weight * (1.0 - confirmed_share));
 }
 
-// What a contour point weighs: as much as its direction is rare. The two ends of a bar are all that
-// holds it along its length, however short they are, and a web of a larger part lacks just those.
-// With M = mean(n n^T) over the contour, w = n^T M^-1 n / 2 makes every direction in the plane
-// weigh the same and the mean weight one.
-class DirectionWeight {
- public:
-  explicit DirectionWeight(const model::Template& part) noexcept {
-    double xx = 0, xy = 0, yy = 0;
-    for (const model::ContourPoint& p : part.contour_points()) {
-      xx += static_cast<double>(p.nx) * p.nx;
-      xy += static_cast<double>(p.nx) * p.ny;
-      yy += static_cast<double>(p.ny) * p.ny;
-    }
-    const double count = std::max(1, part.contour_count);
-    const double determinant = (xx * yy - xy * xy) / (count * count);
-    constexpr double kParallel = 0.01;  // contours of hardly more than one direction weigh alike
-    if (determinant < kParallel) return;
-    inverse_xx_ = 0.5 * yy / count / determinant;
-    inverse_xy_ = -0.5 * xy / count / determinant;
-    inverse_yy_ = 0.5 * xx / count / determinant;
-  }
-  double operator()(const model::ContourPoint& p) const noexcept {
-    const double nx = p.nx;
-    const double ny = p.ny;
-    return inverse_xx_ * nx * nx + 2.0 * inverse_xy_ * nx * ny + inverse_yy_ * ny * ny;
-  }
-
- private:
-  double inverse_xx_ = 1.0;
-  double inverse_xy_ = 0.0;
-  double inverse_yy_ = 1.0;
-};
-
 // Which side of a step the sensor draws as a ramp turns with the part, so no point is more certain
 // than the contour typically is: the middle one of its spreads.
 double typical_spread_mm(const model::Template& part) noexcept {
@@ -161,11 +127,13 @@ SurfaceVerdict judge_surface(const model::Template& part, const refine::FineImag
 
 }  // namespace
 
-Verification verify(const model::Template& part, const refine::FineImages& images,
-                    ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
-                    const VerifyConfig& config) noexcept {
+Verifier::Verifier(const model::Template& part) noexcept
+    : part_(part), weight_(part), typical_spread_mm_(typical_spread_mm(part)), hold_(part) {}
+
+Verification Verifier::verify(const refine::FineImages& images,
+                              ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
+                              const VerifyConfig& config) const noexcept {
   const double probe_mm = kProbe_px * images.grid.cell_mm;
-  const double typical_mm = typical_spread_mm(part);
   const auto judge = [&](const model::ContourPoint& p) {
     const Vec3 q_mm = work_T_object * Vec3{p.x_mm, p.y_mm, p.z_mm};
     const Vec3 falling = work_T_object.rotation * Vec3{p.nx, p.ny, 0.0};
@@ -173,42 +141,41 @@ Verification verify(const model::Template& part, const refine::FineImages& image
     // teach scan saw a ramp the place is as uncertain as that was.
     double edge_tolerance_px = config.edge_tolerance_px;
     edge_tolerance_px +=
-        std::max(typical_mm, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
+        std::max(typical_spread_mm_, static_cast<double>(p.spread_mm)) / images.grid.cell_mm;
     edge_tolerance_px += kWallShare * std::max(0.0, falling.z) * p.step_mm / images.grid.cell_mm;
     return judge_contour(images, claimed, q_mm, falling, probe_mm * falling, edge_tolerance_px,
                          config);
   };
 
-  const SurfaceVerdict surface = judge_surface(part, images, claimed, work_T_object, config);
+  const SurfaceVerdict surface = judge_surface(part_, images, claimed, work_T_object, config);
   Verification out;
   out.surface = surface.evidence;
   out.visible = surface.visible_share;
-  const DirectionWeight weight(part);
   double visible_weight = 0.0;
   double confirmed_weight = 0.0;
-  LandmarkTally landmarks(part.landmarks);
-  Hold hold = config.use_landmarks ? Hold(part) : Hold();
-  const int contour_count = std::min(part.contour_count, config.contour_count);
+  LandmarkTally landmarks(part_.landmarks);
+  Hold hold = config.use_landmarks ? hold_ : Hold();
+  const int contour_count = std::min(part_.contour_count, config.contour_count);
   for (int i = 0; i < contour_count; ++i) {
-    const model::ContourPoint& p = part.contour[i];
+    const model::ContourPoint& p = part_.contour[i];
     const PointVerdict verdict = judge(p);
     if (!verdict.seen) continue;
     ++out.contour.visible_count;
-    visible_weight += weight(p);
+    visible_weight += weight_(p);
     if (verdict.agreement > 0.5) ++out.contour.confirmed_count;
-    confirmed_weight += verdict.agreement * weight(p);
+    confirmed_weight += verdict.agreement * weight_(p);
     if (!config.use_landmarks) continue;
     landmarks.add(i, verdict);
     hold.add(p, verdict.agreement);
   }
-  for (int i = 0; config.use_landmarks && i < part.landmarks.mirrored_count; ++i) {
-    const PointVerdict verdict = judge(part.landmarks.mirrored[i]);
+  for (int i = 0; config.use_landmarks && i < part_.landmarks.mirrored_count; ++i) {
+    const PointVerdict verdict = judge(part_.landmarks.mirrored[i]);
     if (verdict.seen) landmarks.add_mirrored(i, verdict);
   }
   out.score = surface_agreement(surface.confirmed_share, config.contradiction_weight) *
               share(confirmed_weight, visible_weight) * landmarks.agreement();
   out.held = hold.least_share();
-  out.shows_face = landmarks.shows_face(part.contour_count);
+  out.shows_face = landmarks.shows_face(part_.contour_count);
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "flatpose/core/image_view.hpp"
+#include "flatpose/locate/direction_weight.hpp"
+#include "flatpose/locate/hold.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/refine/fine_images.hpp"
 
@@ -41,11 +43,24 @@ struct Verification {
 };
 
 /// Holds the dense template at a pose against the scan.
-/// Shape: `claimed` is of the fine grid, nonzero where accepted matches lie; it may be empty.
-/// Cost: linear in the template's points.  Memory: none.  Thread: reentrant.
-[[nodiscard]] Verification verify(const model::Template& part, const refine::FineImages& images,
-                                  ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
-                                  const VerifyConfig& config) noexcept;
+class Verifier {
+ public:
+  /// The part must outlive it.  Cost: what is the same at every pose, some 10 us.
+  explicit Verifier(const model::Template& part) noexcept;
+
+  /// Shape: `claimed` is of the fine grid, nonzero where accepted matches lie; it may be empty.
+  /// Cost: linear in the template's points.  Memory: none.  Thread: reentrant.
+  [[nodiscard]] Verification verify(const refine::FineImages& images,
+                                    ImageView<const std::uint8_t> claimed,
+                                    const Pose& work_T_object,
+                                    const VerifyConfig& config) const noexcept;
+
+ private:
+  const model::Template& part_;
+  DirectionWeight weight_;
+  double typical_spread_mm_;
+  Hold hold_;  ///< With nothing confirmed yet.
+};
 
 /// Marks the cells under the part's visible surface as explained.
 void claim(const model::Template& part, const refine::FineImages& images, const Pose& work_T_object,

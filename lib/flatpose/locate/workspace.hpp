@@ -1,14 +1,14 @@
 #pragma once
 // All memory of one search, laid out in one place, so that measuring and taking it cannot disagree.
 
+#include <array>
 #include <span>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/locate/instances.hpp"
 #include "flatpose/locate/locator.hpp"
-#include "flatpose/locate/verify.hpp"
 #include "flatpose/refine/fine_images.hpp"
 #include "flatpose/refine/polish.hpp"
-#include "flatpose/refine/raw_contour.hpp"
 #include "flatpose/scene/scene.hpp"
 #include "flatpose/search/grid_search.hpp"
 #include "flatpose/search/places.hpp"
@@ -19,15 +19,8 @@ namespace flatpose::locate {
 
 inline constexpr int kCandidateCountMax = 192;  ///< Of one anchor.
 inline constexpr int kInstanceCountMax = 2 * kCandidateCountMax;
-
-/// A candidate after refinement.
-struct Instance {
-  Pose work_T_object;
-  Verification verification;
-  bool is_open = true;  ///< Neither a match nor out of the question.
-  bool is_polished = false;
-  refine::PolishResult polished;
-};
+inline constexpr int kStartCountMax = 4 * kCandidateCountMax;
+inline constexpr int kPolishCountMax = 4;  ///< At a time.
 
 struct Workspace {
   refine::FineImages fine;
@@ -36,8 +29,9 @@ struct Workspace {
   search::Places places;
   ImageView<std::uint8_t> claimed;
   std::span<search::Candidate> candidates;
-  std::span<Instance> instances;
-  std::span<refine::Crossing> crossings;
+  Instances instances;
+  std::span<Pose> starts;  ///< Of refinements.
+  std::array<refine::PolishScratch, kPolishCountMax> polish;
 };
 
 /// Takes everything but the scene, which build_scene takes itself.

@@ -21,6 +21,17 @@
 
 namespace flatpose::refine {
 
+/// Sums over residuals of M parameters, ready to be added.
+template <std::size_t M>
+struct SparseSums {
+  double cost = 0.0;
+  double square_sum = 0.0;
+  double weight_sum = 0.0;
+  int residual_count = 0;
+  std::array<double, M> gradient{};
+  std::array<std::array<double, M>, M> hessian_lower{};  ///< [row][column], row >= column.
+};
+
 template <int N>
 class NormalEquations {
  public:
@@ -57,24 +68,20 @@ class NormalEquations {
     add_weighted(residual, row_of(), believed);
   }
 
-  /// The same where only the parameters `kParameters`, in rising order, have derivatives.
+  /// Adds many residuals by their sums, (1) to (4), of which only the parameters `kParameters`, in
+  /// rising order, have derivatives.
   template <int... kParameters>
-  void add_sparse(double residual, const std::array<double, sizeof...(kParameters)>& row,
-                  double weight, const RobustLoss& loss) noexcept {
+  void add_summed(const SparseSums<sizeof...(kParameters)>& sums) noexcept {
     constexpr std::array<int, sizeof...(kParameters)> at_index{kParameters...};
-    const LossValue at = loss(residual);
-    cost_ += weight * at.cost;
-    ++residual_count_;
-    const double believed = weight * at.weight;
-    const double weighted_residual = believed * residual;
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      gradient_[at_index[j]] += weighted_residual * row[j];
-      const double weighted = believed * row[j];
-      for (std::size_t i = j; i < row.size(); ++i)
-        hessian_lower_(at_index[i], at_index[j]) += weighted * row[i];
+    for (std::size_t j = 0; j < at_index.size(); ++j) {
+      gradient_[at_index[j]] += sums.gradient[j];
+      for (std::size_t i = j; i < at_index.size(); ++i)
+        hessian_lower_(at_index[i], at_index[j]) += sums.hessian_lower[i][j];
     }
-    square_sum_ += weighted_residual * residual;
-    weight_sum_ += believed;
+    cost_ += sums.cost;
+    square_sum_ += sums.square_sum;
+    weight_sum_ += sums.weight_sum;
+    residual_count_ += sums.residual_count;
   }
 
   /// Adds a residual of which only that the loss rejects it is known, and what it costs.

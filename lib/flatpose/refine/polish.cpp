@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flatpose/refine/pose_problem.hpp"
+#include "flatpose/refine/surface_sums.hpp"
 
 namespace flatpose::refine {
 namespace {
@@ -11,15 +12,9 @@ namespace {
 constexpr int kPointCountMin = 12;
 constexpr int kCrossingCountMin = 6;
 constexpr double kSigmaMin = 0.02;  // of the pitch: quantised scans may fit exactly
-constexpr int kPatchRadiusMax_px = 3;
-
-// The raw points of the footprint: a square patch around each surface point, as large as their
-// spacing, so that nearly every point is used about once.
-int patch_radius_px(const model::Template& part) noexcept {
-  const double spacing_mm = std::sqrt(part.area_mm2 / std::max(1, part.surface_count));
-  const double radius_px = 0.5 * (spacing_mm / part.pitch_mm - 1.0);
-  return std::clamp(static_cast<int>(radius_px), 0, kPatchRadiusMax_px);
-}
+// Rounds before the last need no more of the contour and the surface than this to come home.
+constexpr int kCrossingsToComeHome = 96;
+constexpr int kPointsToComeHome = 500;
 
 struct Sigmas {
   double surface_mm = 0.1;
@@ -43,44 +38,39 @@ struct Fit {
 // that x, y and phi are left to the contour.
 class PolishProblem {
  public:
-  PolishProblem(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
-                const PolishConfig& config, double contour_reach_mm, const Sigmas& sigmas,
-                std::span<const Crossing> crossings) noexcept
+  PolishProblem(const model::Template& part, const PolishConfig& config, double contour_reach_mm,
+                const Sigmas& sigmas, const PolishScratch& scratch) noexcept
       : part_(part),
-        raw_(raw),
-        work_T_object_(work_T_object),
-        object_T_scan_(work_T_object.inverse() * raw.work_T_scan),
-        radius_px_(patch_radius_px(part)),
-        surface_loss_(RobustLoss::tukey(config.height_tolerance_mm)),
+        sum_surface_(sum_surface_for(config.vector_path)),
+        surface_reach_mm_(config.height_tolerance_mm),
         contour_loss_(RobustLoss::tukey(contour_reach_mm)),
         surface_weight_(1.0 / (sigmas.surface_mm * sigmas.surface_mm)),
         contour_variance_(sigmas.contour_mm * sigmas.contour_mm),
-        crossings_(crossings) {}
+        scratch_(scratch) {}
 
   bool evaluate(const Vector<6>& h, NormalEquations<6>* equations) const noexcept {
-    visit_surface([&](double r, double qx, double qy) {
-      // (1) with g = z: the turn about z and the shifts along x and y have no part in it.
-      equations->add_sparse<0, 1, 5>(moved_up(r, qx, qy, h), {-qy, qx, -1.0}, surface_weight_,
-                                     surface_loss_);
-    });
+    add_surface(h, equations);
     visit_contour([&](double r, const Vec3& q, const Vec3& g, double weight) {
-      add(r, q, g, h, weight, contour_loss_, equations);
+      const Vec3 turn = cross(q, g);
+      Vector<6> row;
+      row << -turn.x, -turn.y, -turn.z, -g.x, -g.y, -g.z;
+      equations->add(moved(r, q, g, h), row, weight, contour_loss_);
     });
     if (part_.symmetry.order == model::kFullSymmetry) hold_turn(h, equations);
     return true;
   }
 
   [[nodiscard]] Fit surface_fit(const Vector<6>& h) const noexcept {
-    Fit fit;
-    visit_surface([&](double r, double qx, double qy) {
-      tally(moved_up(r, qx, qy, h), surface_loss_, &fit);
-    });
-    return fit;
+    const SurfaceSums s = surface_sums(h);
+    return {s.wrr, s.w};
   }
   [[nodiscard]] Fit contour_fit(const Vector<6>& h) const noexcept {
     Fit fit;
     visit_contour([&](double r, const Vec3& q, const Vec3& g, double) {
-      tally(moved(r, q, g, h), contour_loss_, &fit);
+      const double at_h = moved(r, q, g, h);
+      const double weight = contour_loss_(at_h).weight;
+      fit.square_sum += weight * at_h * at_h;
+      fit.weight_sum += weight;
     });
     return fit;
   }
@@ -90,22 +80,26 @@ class PolishProblem {
     return r - dot(cross(q, g), {h[0], h[1], h[2]}) - dot(g, {h[3], h[4], h[5]});
   }
 
-  static double moved_up(double r, double qx, double qy, const Vector<6>& h) noexcept {  // g = z
-    return r - (qy * h[0] - qx * h[1]) - h[5];
+  [[nodiscard]] SurfaceSums surface_sums(const Vector<6>& h) const noexcept {
+    SurfaceSums sums;
+    sum_surface_(scratch_.footprint, {h[0], h[1], h[5]}, surface_reach_mm_, sums);
+    return sums;
   }
 
-  static void add(double r, const Vec3& q, const Vec3& g, const Vector<6>& h, double weight,
-                  const RobustLoss& loss, NormalEquations<6>* equations) noexcept {
-    const Vec3 turn = cross(q, g);
-    Vector<6> row;
-    row << -turn.x, -turn.y, -turn.z, -g.x, -g.y, -g.z;
-    equations->add(moved(r, q, g, h), row, weight, loss);
-  }
-
-  static void tally(double r, const RobustLoss& loss, Fit* fit) noexcept {
-    const double weight = loss(r).weight;
-    fit->square_sum += weight * r * r;
-    fit->weight_sum += weight;
+  // (1) with g = z: a row is (-y, x, -1) for the turns about x and y and the shift along z.
+  void add_surface(const Vector<6>& h, NormalEquations<6>* equations) const noexcept {
+    const SurfaceSums s = surface_sums(h);
+    const double weight = surface_weight_;
+    SparseSums<3> sums;
+    sums.residual_count = scratch_.footprint.count;
+    sums.cost = weight * surface_reach_mm_ * surface_reach_mm_ / 6.0 * (sums.residual_count - s.u3);
+    sums.square_sum = weight * s.wrr;
+    sums.weight_sum = weight * s.w;
+    sums.gradient = {-weight * s.wry, weight * s.wrx, -weight * s.wr};
+    sums.hessian_lower = {{{weight * s.wyy, 0.0, 0.0},
+                           {-weight * s.wxy, weight * s.wxx, 0.0},
+                           {weight * s.wy, -weight * s.wx, weight * s.w}}};
+    equations->add_summed<0, 1, 5>(sums);
   }
 
   // A turn that changes nothing is not fitted to the noise: about the axis of symmetry nothing may
@@ -116,58 +110,36 @@ class PolishProblem {
   }
 
   template <class Visit>
-  void visit_surface(Visit&& visit) const noexcept {
-    for (const model::SurfacePoint& p : part_.surface_points()) {
-      const Pixel centre = raw_.pixel_under(work_T_object_ * Vec3{p.x_mm, p.y_mm, p.z_mm});
-      if (centre.is_none()) continue;
-      const double nz2 = 1.0 - static_cast<double>(p.nx) * p.nx - static_cast<double>(p.ny) * p.ny;
-      const double nz = std::sqrt(std::max(0.25, nz2));
-      const Vec3 slope{p.nx / nz, p.ny / nz, 1.0};
-      const Vec3 p_mm{p.x_mm, p.y_mm, p.z_mm};
-      const int row_end = std::min(centre.row + radius_px_ + 1, raw_.scan.height_px);
-      const int column_end = std::min(centre.column + radius_px_ + 1, raw_.scan.width_px);
-      for (int row = std::max(centre.row - radius_px_, 0); row < row_end; ++row) {
-        for (int column = std::max(centre.column - radius_px_, 0); column < column_end; ++column) {
-          const Vec3 q_scan_mm = raw_.scan(column, row);
-          if (!is_valid(q_scan_mm)) continue;
-          const Vec3 q = object_T_scan_ * q_scan_mm;
-          visit(dot(slope, q - p_mm), q.x, q.y);
-        }
-      }
-    }
-  }
-
-  template <class Visit>
   void visit_contour(Visit&& visit) const noexcept {
     for (int i = 0; i < part_.contour_count; ++i) {
-      if (!crossings_[i].found) continue;
+      const Crossing& crossing = scratch_.crossings[i];
+      if (!crossing.found) continue;
       const model::ContourPoint& p = part_.contour[i];
       const double spread2 = static_cast<double>(p.spread_mm) * p.spread_mm +
-                             0.25 * crossings_[i].width_mm * crossings_[i].width_mm;
-      visit(crossings_[i].offset_mm, Vec3{p.x_mm, p.y_mm, p.z_mm}, Vec3{p.nx, p.ny, 0.0},
+                             0.25 * crossing.width_mm * crossing.width_mm;
+      visit(crossing.offset_mm, Vec3{p.x_mm, p.y_mm, p.z_mm}, Vec3{p.nx, p.ny, 0.0},
             1.0 / (contour_variance_ + spread2));
     }
   }
 
   const model::Template& part_;
-  const RawScan& raw_;
-  const Pose& work_T_object_;
-  Pose object_T_scan_;
-  int radius_px_;
-  RobustLoss surface_loss_;
+  SumSurface sum_surface_;
+  double surface_reach_mm_;
   RobustLoss contour_loss_;
   double surface_weight_;
   double contour_variance_;
-  std::span<const Crossing> crossings_;
+  const PolishScratch& scratch_;
 };
 
+// Measures the contour, until `enough` of it is found: its points are in an order in which any
+// first ones are spread well.
 int measure(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
-            const PolishConfig& config, std::span<Crossing> crossings) noexcept {
+            const PolishConfig& config, int enough, std::span<Crossing> crossings) noexcept {
   const RawContourConfig contour_config{config.search_mm, config.height_tolerance_mm};
   int found_count = 0;
   for (int i = 0; i < part.contour_count; ++i) {
     crossings[i] = {};
-    if (part.contour[i].spread_mm < 0.0F) continue;
+    if (part.contour[i].spread_mm < 0.0F || found_count >= enough) continue;
     crossings[i] = measure_crossing(raw, work_T_object, part.contour[i], contour_config);
     if (crossings[i].found) ++found_count;
   }
@@ -210,19 +182,27 @@ Matrix<6> covariance_seen_from(const Matrix<6>& covariance, const Pose& first_T_
   return out;
 }
 
+PolishScratch take_polish_scratch(Arena& arena) noexcept {
+  return {arena.take<Crossing>(model::kContourPointCountMax), take_footprint(arena)};
+}
+
 Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                             const Pose& work_T_object, const PolishConfig& config,
-                            std::span<Crossing> crossings) noexcept {
-  if (crossings.size() < static_cast<std::size_t>(part.contour_count))
-    return Status::kShapeMismatch;
+                            PolishScratch& scratch) noexcept {
   PolishResult out;
   out.work_T_object = work_T_object;
   Sigmas sigmas{part.noise_mm, 0.5 * part.pitch_mm};
   for (int round = 0; round < config.round_count; ++round) {
-    out.crossing_count = measure(part, raw, out.work_T_object, config, crossings);
+    const bool is_last = round + 1 == config.round_count;
+    out.crossing_count =
+        measure(part, raw, out.work_T_object, config,
+                is_last ? part.contour_count : kCrossingsToComeHome, scratch.crossings);
+    gather(part, raw, out.work_T_object, !is_last, scratch.footprint);
+    if (!is_last && scratch.footprint.count < kPointsToComeHome)
+      gather(part, raw, out.work_T_object, false, scratch.footprint);
     // The reach shrinks with the rounds: wide to come home, narrow to shut out what is not ours.
     const double reach_mm = std::max(config.search_mm / (round + 1), 1.5 * part.pitch_mm);
-    const PolishProblem problem(part, raw, out.work_T_object, config, reach_mm, sigmas, crossings);
+    const PolishProblem problem(part, config, reach_mm, sigmas, scratch);
     const auto minimum = minimize<6>(problem, Vector<6>(Vector<6>::Zero()), solver_config());
     const Fit surface = problem.surface_fit(minimum.x);
     const Fit contour = problem.contour_fit(minimum.x);

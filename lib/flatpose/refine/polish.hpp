@@ -7,7 +7,10 @@
 #include <array>
 #include <span>
 
+#include "flatpose/core/arena.hpp"
+#include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
+#include "flatpose/refine/footprint.hpp"
 #include "flatpose/refine/levenberg_marquardt.hpp"
 #include "flatpose/refine/raw_contour.hpp"
 #include "flatpose/refine/raw_scan.hpp"
@@ -18,7 +21,8 @@ struct PolishConfig {
   double height_tolerance_mm =
       1.0;                 ///< Points farther off the surface than this are not the part's.
   double search_mm = 2.0;  ///< How far the contour may lie from where the first refinement left it.
-  int round_count = 3;
+  int round_count = 3;     ///< All but the last with a part of the points.
+  VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
 struct PolishResult {
@@ -36,11 +40,18 @@ struct PolishResult {
 [[nodiscard]] Matrix<6> covariance_seen_from(const Matrix<6>& covariance,
                                              const Pose& first_T_other) noexcept;
 
-/// Fits the pose to the raw points.  Memory: `crossings` holds one entry a contour point of the
-/// template. Fails: kTooFewPoints when the surface or the contour is hardly there; kShapeMismatch
-/// (crossings too short). Thread: reentrant.
+/// What was measured in a round; one for each polish that runs at a time.
+struct PolishScratch {
+  std::span<Crossing> crossings;  ///< By contour point.
+  Footprint footprint;
+};
+[[nodiscard]] PolishScratch take_polish_scratch(Arena& arena) noexcept;
+
+/// Fits the pose to the raw points.  Cost: a few hundred microseconds for 10 000 of them.
+/// Fails: kTooFewPoints when the surface or the contour is hardly there.  Thread: reentrant, with a
+/// scratch of its own.
 [[nodiscard]] Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                                           const Pose& work_T_object, const PolishConfig& config,
-                                          std::span<Crossing> crossings) noexcept;
+                                          PolishScratch& scratch) noexcept;
 
 }  // namespace flatpose::refine

@@ -20,7 +20,7 @@ const Pose kTruth = test::pose_at(75.2, 60.4, test::kPartTop_mm, 0.35);
 Verification verified(const MadeScan& scan, const Pose& pose,
                       const model::Template& part = test::block_part()) {
   const MadeScene made(scan);
-  return verify(part, made.fine, {}, pose, {});
+  return Verifier(part).verify(made.fine, {}, pose, {});
 }
 
 MadeScan scan_of(const test::HeightOf& height_of) { return {150, 120, 1.0, height_of}; }
@@ -72,7 +72,7 @@ TEST(Verify, MissingSurfaceCountsManifold) {
   const auto with_weight = [&](double weight) {
     VerifyConfig config;
     config.contradiction_weight = weight;
-    return verify(part, made.fine, {}, kTruth, config);
+    return Verifier(part).verify(made.fine, {}, kTruth, config);
   };
   const Verification once = with_weight(1.0);
   const double confirmed =
@@ -186,9 +186,9 @@ TEST(Claim, IsSeenAtThePlaceAndNowhereElse) {
   const ImageView<std::uint8_t> claimed{cells.data(), 150, 120, 150};
   const model::Template part = test::block_part();
   claim(part, made.fine, kTruth, {}, claimed);
-  const Verification again = verify(part, made.fine, claimed, kTruth, {});
+  const Verification again = Verifier(part).verify(made.fine, claimed, kTruth, {});
   EXPECT_EQ(again.surface.claimed_count, again.surface.visible_count);
-  const Verification elsewhere = verify(part, made.fine, claimed, other, {});
+  const Verification elsewhere = Verifier(part).verify(made.fine, claimed, other, {});
   EXPECT_EQ(elsewhere.surface.claimed_count, 0);
   EXPECT_GT(elsewhere.score, 0.95);
   // Cells claimed lie on the part but for the width of a sample.

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "flatpose/refine/pose_problem.hpp"
 #include "tests/lib/locate/made_scan.hpp"
@@ -57,7 +59,9 @@ Pose displaced(const Pose& pose) {
 Matrix<6> covariance_of(const PolishResult& result) { return Matrix<6>(result.covariance.data()); }
 
 struct Polished {
-  std::array<Crossing, model::kContourPointCountMax> crossings;
+  std::vector<std::byte> memory = std::vector<std::byte>(1'000'000);
+  Arena arena{std::span(memory)};
+  PolishScratch scratch = take_polish_scratch(arena);
   Result<PolishResult> result = Status::kTooFewPoints;
 };
 
@@ -65,7 +69,7 @@ Polished polished(const model::Template& part, const MadeScan& scan, const Pose&
   const MadeScene made(scan);
   const RawScan raw{scan.view(), {}, &made.scene.map};
   Polished out;
-  out.result = polish(part, raw, start, {}, out.crossings);
+  out.result = polish(part, raw, start, {}, out.scratch);
   return out;
 }
 
@@ -163,7 +167,7 @@ TEST(Polish, PointsOfNoSpreadTakeNoPart) {
   const auto p = polished(part, rectangle_scan(1.0, 0.0), kTruth);
   ASSERT_TRUE(p.result);
   EXPECT_LE(p.result->crossing_count, part.contour_count / 2);
-  for (int i = 0; i < part.contour_count; i += 2) EXPECT_FALSE(p.crossings[i].found);
+  for (int i = 0; i < part.contour_count; i += 2) EXPECT_FALSE(p.scratch.crossings[i].found);
   for (model::ContourPoint& c : part.contour) c.spread_mm = -1.0F;
   EXPECT_EQ(polished(part, rectangle_scan(1.0, 0.0), kTruth).result.status(),
             Status::kTooFewPoints);
@@ -175,17 +179,6 @@ TEST(Polish, ReportsTooFewPoints) {
   const Pose outside = test::pose_at(500.0, 500.0, kTop_mm);
   EXPECT_EQ(polished(rectangle(), rectangle_scan(1.0, 0.0), outside).result.status(),
             Status::kTooFewPoints);
-}
-
-TEST(Polish, RefusesTooFewCrossings) {
-  const MadeScan scan = rectangle_scan(1.0, 0.0);
-  const MadeScene made(scan);
-  const RawScan raw{scan.view(), {}, &made.scene.map};
-  const model::Template part = rectangle();
-  std::vector<Crossing> crossings(static_cast<std::size_t>(part.contour_count) - 1);
-  EXPECT_EQ(polish(part, raw, kTruth, {}, crossings).status(), Status::kShapeMismatch);
-  crossings.resize(static_cast<std::size_t>(part.contour_count));
-  EXPECT_TRUE(polish(part, raw, kTruth, {}, crossings));
 }
 
 }  // namespace

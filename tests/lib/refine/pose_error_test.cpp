@@ -52,8 +52,10 @@ Pose refined(const model::Template& part, const sim::SimulatedScan& scan, const 
   const auto wide = minimize<6>(PoseProblem(part, made.fine, settings.wide), start);
   const auto narrow = minimize<6>(PoseProblem(part, made.fine, settings.narrow), wide.x);
   const RawScan raw{scan.view(), {}, &made.scene.map};
-  std::array<Crossing, model::kContourPointCountMax> crossings;
-  const auto polished = polish(part, raw, narrow.x, settings.polish, crossings);
+  std::vector<std::byte> polish_memory(1'000'000);
+  Arena polish_arena{std::span(polish_memory)};
+  PolishScratch scratch = take_polish_scratch(polish_arena);
+  const auto polished = polish(part, raw, narrow.x, settings.polish, scratch);
   EXPECT_TRUE(polished) << to_string(polished.status());
   return polished->work_T_object;
 }

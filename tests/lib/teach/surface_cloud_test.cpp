@@ -69,7 +69,8 @@ TEST(SurfaceWeights, MakeTheVisibleShareThatOfTheArea) {
         const Vec3 p = kLies.inverse() * Vec3{x, y, test::kPartTop_mm};
         return p.x > at_mm ? 40.0 : top_mm(has_hole, x, y);
       }));
-      const locate::Verification v = locate::verify(part, made.fine, {}, part.scan_T_object, {});
+      const locate::Verification v =
+          locate::Verifier(part).verify(made.fine, {}, part.scan_T_object, {});
       EXPECT_NEAR(v.visible, share_before(has_hole, at_mm), 0.03) << at_mm << " " << has_hole;
     }
   }
