@@ -1,6 +1,7 @@
 #include "flatpose/image/canny.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flatpose/core/maths.hpp"
@@ -8,23 +9,50 @@
 #include "flatpose/image/glance.hpp"
 #include "flatpose/image/hysteresis.hpp"
 #include "flatpose/image/row_kernels.hpp"
+#include "flatpose/image/slope_band.hpp"
 #include "flatpose/image/slope_field.hpp"
+#include "flatpose/rectify/slots.hpp"
 
 namespace flatpose::image {
 namespace {
 
+using rectify::kChunkCountMax;
+using rectify::RowChunks;
+using rectify::Slots;
+
+// Rows whose slopes are looked at together: few enough to stay near the processor, enough to make
+// light of the rows worked out twice.
+constexpr int kBandRows = 64;
+// Tops of ridges are thinner than this.
+constexpr std::size_t kCellsPerTop = 2;
+
+/// What one chunk of rows works in.
+struct ChunkScratch {
+  SlopeBand slopes;
+  std::span<std::uint8_t> marks;  // of a row
+
+  ChunkScratch() = default;
+  ChunkScratch(Arena& arena, int width_px, int height_px) noexcept
+      : slopes(SlopeBand::take(arena, width_px,
+                               std::min(kBandRows, height_px) + 2 * SlopeBand::kHalo_px)),
+        marks(arena.take<std::uint8_t>(static_cast<std::size_t>(width_px))) {}
+};
+
 struct EdgeScratch {
-  ImageView<float> slope_x;
-  ImageView<float> slope_y;
-  std::span<std::int32_t> stack;
+  std::array<ChunkScratch, kChunkCountMax> chunks;
+  std::span<EdgePoint> tops;
+  std::span<std::int32_t> stack;  // every kept cell is in the lists of tops
 };
 
 EdgeScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
   EdgeScratch s;
-  s.slope_x = arena.take_image<float>(width_px, height_px);
-  s.slope_y = arena.take_image<float>(width_px, height_px);
-  s.stack = arena.take<std::int32_t>(static_cast<std::size_t>(width_px) *
-                                     static_cast<std::size_t>(height_px));
+  const RowChunks chunks(height_px, kBandRows);
+  for (int i = 0; i < chunks.count(); ++i)
+    s.chunks[static_cast<std::size_t>(i)] = ChunkScratch(arena, width_px, height_px);
+  const std::size_t top_count =
+      static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) / kCellsPerTop;
+  s.tops = arena.take<EdgePoint>(top_count);
+  s.stack = arena.take<std::int32_t>(top_count);
   return s;
 }
 
@@ -42,22 +70,16 @@ float tangent(float angle_rad) noexcept {
   return s.cos > 1e-9 ? static_cast<float>(s.sin / s.cos) : 1e9F;
 }
 
-/// The slopes of row y and those `reach` rows away, held off the border.
-ThreeRows rows_at(ImageView<const float> slope, int y, int reach) noexcept {
-  const int last = slope.height_px - 2;
-  return {slope.row(std::max(1, y - reach)), slope.row(y), slope.row(std::min(last, y + reach))};
-}
-
 // A crease of angle t changes the slope by at least t; seen along an axis, by 0.7 of it.
-void mark_creases(const SlopeField& f, int y, float turn_low, std::uint8_t* marks) noexcept {
-  const float* slope_x = f.slope_x.row(y);
-  const ThreeRows slope_y = rows_at(f.slope_y, y, kCreaseReach_px);
+void mark_creases(const SlopeBand& slopes, int y, int width_px, float turn_low,
+                  std::uint8_t* marks) noexcept {
+  const float* slope_x = slopes.x_row(y);
+  const float* above = slopes.y_row(y - kCreaseReach_px);
+  const float* below = slopes.y_row(y + kCreaseReach_px);
   const float least = 0.5F * turn_low;
-  const int last = f.slope_x.width_px - 2;
-  for (int x = 1; x <= last; ++x) {
-    const float left = slope_x[std::max(1, x - kCreaseReach_px)];
-    const float right = slope_x[std::min(last, x + kCreaseReach_px)];
-    if (std::max(std::fabs(right - left), std::fabs(slope_y.below[x] - slope_y.above[x])) >= least)
+  for (int x = 1; x + 1 < width_px; ++x) {
+    const float along_x = slope_x[x + kCreaseReach_px] - slope_x[x - kCreaseReach_px];
+    if (std::max(std::fabs(along_x), std::fabs(below[x] - above[x])) >= least)
       marks[x] |= kMaybeCrease;
   }
 }
@@ -67,121 +89,199 @@ std::uint8_t marked(EdgeKind kind, bool strong) noexcept {
                                    (strong ? kStrongMark : kWeakMark));
 }
 
-/// Finds the edges of a height map and measures them, many at a time.
-class EdgeFinder {
+struct Views {
+  ImageView<const float> filled_mm;
+  ImageView<const std::uint8_t> missing;
+  ImageView<std::uint8_t> marks;
+};
+
+/// Finds the tops of ridges of some rows and measures them, many at a time.
+class TopFinder {
  public:
-  EdgeFinder(const SlopeField& field, const Thresholds& thresholds, const RowKernels& kernels,
-             ImageView<std::uint8_t> marks) noexcept
-      : f_(field), jumps_(field), t_(thresholds), kernels_(kernels), marks_(marks) {}
+  TopFinder(const Views& views, const Thresholds& thresholds, VectorPath path,
+            ChunkScratch& scratch, std::span<EdgePoint> tops) noexcept
+      : v_(views),
+        t_(thresholds),
+        path_(path),
+        kernels_(row_kernels(path)),
+        scratch_(scratch),
+        tops_(tops) {}
 
-  /// Marks what may be an edge. Slopes are written on the way: a row's tests look three rows on.
-  void mark(ImageView<float> slope_x, ImageView<float> slope_y) noexcept {
-    const int w = marks_.width_px;
-    const int h = marks_.height_px;
-    for (int ahead = 0; ahead < h + kBeside_px; ++ahead) {
-      if (ahead < h)
-        kernels_.sobel(three_rows(f_.height_mm, ahead), w, slope_x.row(ahead), slope_y.row(ahead));
-      const int y = ahead - kBeside_px;
-      if (y < 0) continue;
-      if (y == 0 || y + 1 >= h || w < 3) {
-        std::fill_n(marks_.row(y), w, std::uint8_t{0});
-        continue;
-      }
-      kernels_.mark_jumps(f_.slope_x.row(y), rows_at(f_.slope_y, y, kBeside_px), w,
-                          t_.jump_low_mm / kSmear_px, marks_.row(y));
-      if (t_.creases) mark_creases(f_, y, t_.crease_low_tan * t_.cell_mm, marks_.row(y));
+  /// Appends them to `tops` and marks their cells. Returns how many there are, also when there is
+  /// no room for all.
+  std::size_t run(int row_begin, int row_end) noexcept {
+    for (int begin = row_begin; begin < row_end; begin += kBandRows)
+      run_band(begin, std::min(begin + kBandRows, row_end));
+    return count_;
+  }
+
+ private:
+  void run_band(int begin, int end) noexcept {
+    const int w = v_.marks.width_px;
+    for (int y = begin; y < end; ++y) std::fill_n(v_.marks.row(y), w, std::uint8_t{0});
+    begin = std::max(begin, 1);
+    end = std::min(end, v_.marks.height_px - 1);
+    if (w < 3 || begin >= end) return;
+    scratch_.slopes.fill(v_.filled_mm, begin - SlopeBand::kHalo_px, end + SlopeBand::kHalo_px,
+                         path_);
+    const JumpField field(v_.filled_mm, v_.missing, scratch_.slopes);
+    batch_.count = 0;
+    for (int y = begin; y < end; ++y) {
+      mark(y);
+      for_each_set(scratch_.marks.data(), w, [&](int x) {
+        if (batch_.count == JumpBatch::kCountMax) flush(field);
+        may_be_[batch_.count] = scratch_.marks[static_cast<std::size_t>(x)];
+        batch_.add(x, y);
+      });
     }
+    if (batch_.count > 0) flush(field);
   }
 
-  /// Turns the marks of candidates into those of edges.
-  void judge() noexcept {
-    for_each_batch([this] { judge_batch(); });
+  /// Marks what may be an edge.
+  void mark(int y) noexcept {
+    const SlopeBand& s = scratch_.slopes;
+    const int w = v_.marks.width_px;
+    kernels_.mark_jumps(s.x_row(y), {s.y_row(y - kBeside_px), s.y_row(y), s.y_row(y + kBeside_px)},
+                        w, t_.jump_low_mm / kSmear_px, scratch_.marks.data());
+    if (t_.creases) mark_creases(s, y, w, t_.crease_low_tan * t_.cell_mm, scratch_.marks.data());
   }
 
-  /// Measures what was kept. Where the closer look finds no step left, noise beside a real contour
+  void flush(const JumpField& field) noexcept {
+    batch_.pad();
+    kernels_.test_jumps(field, t_.jump_low_mm, batch_);
+    kernels_.measure_jumps(field, batch_);
+    int next_cell = 0;
+    for (int i = 0; i < batch_.jump_count; ++i) {
+      const int cell = batch_.index[i];
+      if (t_.creases) {
+        for (; next_cell < cell; ++next_cell) add_crease(next_cell);
+        if ((may_be_[cell] & kMaybeJump) == 0) continue;
+        next_cell = cell + 1;
+      }
+      add_jump(i);
+    }
+    for (; t_.creases && next_cell < batch_.count; ++next_cell) add_crease(next_cell);
+    batch_.count = 0;
+  }
+
+  void add_jump(int i) noexcept {
+    const JumpBatch& b = batch_;
+    const EdgeKind kind = b.below_is_missing[i] != 0 ? EdgeKind::kMissingBorder : EdgeKind::kJump;
+    const int cell = b.index[i];
+    add({b.x_px[i], b.y_px[i], b.fall_x[i], b.fall_y[i], b.step_mm[i],
+         static_cast<std::int16_t>(b.column[cell]), static_cast<std::int16_t>(b.row[cell]), kind},
+        b.tested_step_mm[i] >= t_.jump_high_mm);
+  }
+
+  void add_crease(int cell) noexcept {
+    const int x = batch_.column[cell];
+    const int y = batch_.row[cell];
+    if ((may_be_[cell] & kMaybeCrease) == 0 || v_.missing(x, y) != 0) return;
+    const SlopeBand& s = scratch_.slopes;
+    const auto slopes = [&](float* first) {
+      return ImageView<const float>{first + s.origin(), v_.marks.width_px, v_.marks.height_px,
+                                    s.stride_px};
+    };
+    const SlopeField field(v_.filled_mm, v_.missing, slopes(s.x), slopes(s.y));
+    const CreaseTest crease = test_crease(field, x, y, t_.cell_mm, t_.jump_low_mm);
+    if (crease.turn_tan >= t_.crease_low_tan)
+      add(crease.point, crease.turn_tan >= t_.crease_high_tan);
+  }
+
+  void add(const EdgePoint& point, bool strong) noexcept {
+    if (count_ < tops_.size()) {
+      tops_[count_] = point;
+      v_.marks.row(point.row)[point.column] = marked(point.kind, strong);
+    }
+    ++count_;
+  }
+
+  const Views& v_;
+  const Thresholds& t_;
+  VectorPath path_;
+  const RowKernels& kernels_;
+  ChunkScratch& scratch_;
+  std::span<EdgePoint> tops_;
+  std::size_t count_ = 0;
+  JumpBatch batch_;
+  std::array<std::uint8_t, JumpBatch::kCountMax> may_be_;
+};
+
+/// The tops of all rows, chunk by chunk.
+class TopLists {
+ public:
+  TopLists(const Views& views, const EdgeScratch& scratch) noexcept
+      : chunks_(views.marks.height_px, kBandRows), views_(views), scratch_(scratch) {}
+
+  /// False when there are more than there is room for.
+  [[nodiscard]] bool find(const Thresholds& thresholds, VectorPath path,
+                          Executor& executor) noexcept {
+    Slots slots;
+    auto body = [&](int chunk) {
+      const int slot = slots.take();
+      ChunkScratch scratch = scratch_.chunks[static_cast<std::size_t>(slot)];
+      TopFinder finder(views_, thresholds, path, scratch, room(chunk));
+      counts_[static_cast<std::size_t>(chunk)] =
+          finder.run(chunks_.begin(chunk), chunks_.end(chunk));
+      slots.give_back(slot);
+    };
+    for_each_chunk(executor, chunks_.count(), body);
+    for (int i = 0; i < chunks_.count(); ++i) {
+      if (counts_[static_cast<std::size_t>(i)] > room(i).size()) return false;
+    }
+    return true;
+  }
+
+  void keep_connected() noexcept {
+    for_each([this](const EdgePoint& top) {
+      if ((mark_of(top) & kStrongMark) != 0)
+        image::keep_connected(views_.marks, top.column, top.row, scratch_.stack);
+    });
+  }
+
+  /// Copies what was kept. Where the closer look finds no step left, noise beside a real contour
   /// was taken for one: that cell is dropped.
-  Result<int> collect(std::span<EdgePoint> out) noexcept {
+  Result<int> collect(float jump_low_mm, std::span<EdgePoint> out) noexcept {
+    constexpr float kLeastLeft = 0.5F;  // of the threshold it has passed
     std::size_t count = 0;
-    for_each_batch([&] { collect_batch(out, count); });
+    for_each([&](const EdgePoint& top) {
+      std::uint8_t& mark = mark_of(top);
+      const bool is_step = top.kind == EdgeKind::kCrease || top.step_mm >= kLeastLeft * jump_low_mm;
+      if ((mark & kWeakMark) != 0 || !is_step) {
+        mark = 0;
+        return;
+      }
+      if (count < out.size()) out[count] = top;
+      ++count;
+    });
     if (count > out.size()) return Status::kTooLarge;
     return static_cast<int>(count);
   }
 
  private:
-  template <class Body>
-  void for_each_batch(const Body& body) noexcept {
-    batch_.count = 0;
-    const auto flush = [&] {
-      batch_.pad();
-      body();
-      batch_.count = 0;
+  [[nodiscard]] std::uint8_t& mark_of(const EdgePoint& top) const noexcept {
+    return views_.marks.row(top.row)[top.column];
+  }
+  [[nodiscard]] std::span<EdgePoint> room(int chunk) const noexcept {
+    const auto before = [this](int row) {
+      return static_cast<std::size_t>(row) * static_cast<std::size_t>(views_.marks.width_px) /
+             kCellsPerTop;
     };
-    for (int y = 1; y + 1 < marks_.height_px; ++y) {
-      for_each_set(marks_.row(y), marks_.width_px, [&](int x) {
-        batch_.add(x, y);
-        if (batch_.count == JumpBatch::kCountMax) flush();
-      });
-    }
-    flush();
+    const std::size_t first = before(chunks_.begin(chunk));
+    return scratch_.tops.subspan(first, before(chunks_.end(chunk)) - first);
   }
-
-  void judge_batch() noexcept {
-    kernels_.test_jumps(jumps_, t_.jump_low_mm, batch_);
-    for (int i = 0; i < batch_.count; ++i) {
-      std::uint8_t& mark = marks_(batch_.column[i], batch_.row[i]);
-      mark = judged(i, mark);
+  template <class Body>
+  void for_each(const Body& body) const noexcept {
+    for (int i = 0; i < chunks_.count(); ++i) {
+      const std::span<EdgePoint> all = room(i);
+      for (const EdgePoint& top : all.first(counts_[static_cast<std::size_t>(i)])) body(top);
     }
   }
 
-  [[nodiscard]] std::uint8_t judged(int i, std::uint8_t candidate) const noexcept {
-    const float step_mm = batch_.step_mm[i];
-    if ((candidate & kMaybeJump) != 0 && step_mm >= t_.jump_low_mm) {
-      return marked(batch_.below_is_missing[i] != 0 ? EdgeKind::kMissingBorder : EdgeKind::kJump,
-                    step_mm >= t_.jump_high_mm);
-    }
-    const int x = batch_.column[i];
-    const int y = batch_.row[i];
-    if ((candidate & kMaybeCrease) == 0 || f_.missing(x, y) != 0) return 0;
-    const float turn_tan = test_crease(f_, x, y, t_.cell_mm, t_.jump_low_mm).turn_tan;
-    return turn_tan >= t_.crease_low_tan ? marked(EdgeKind::kCrease, turn_tan >= t_.crease_high_tan)
-                                         : std::uint8_t{0};
-  }
-
-  void collect_batch(std::span<EdgePoint> out, std::size_t& count) noexcept {
-    constexpr float kLeastLeft = 0.5F;  // of the threshold it has passed
-    kernels_.measure_jumps(jumps_, t_.jump_low_mm, batch_);
-    for (int i = 0; i < batch_.count; ++i) {
-      std::uint8_t& mark = marks_(batch_.column[i], batch_.row[i]);
-      const auto kind = static_cast<EdgeKind>(mark);
-      if (kind != EdgeKind::kCrease && !(batch_.step_mm[i] >= kLeastLeft * t_.jump_low_mm)) {
-        mark = 0;
-        continue;
-      }
-      if (count < out.size()) out[count] = measured(i, kind);
-      ++count;
-    }
-  }
-
-  [[nodiscard]] EdgePoint measured(int i, EdgeKind kind) const noexcept {
-    const JumpBatch& b = batch_;
-    if (kind == EdgeKind::kCrease)
-      return test_crease(f_, b.column[i], b.row[i], t_.cell_mm, t_.jump_low_mm).point;
-    return {b.x_px[i],
-            b.y_px[i],
-            b.fall_x[i],
-            b.fall_y[i],
-            b.step_mm[i],
-            static_cast<std::int16_t>(b.column[i]),
-            static_cast<std::int16_t>(b.row[i]),
-            kind};
-  }
-
-  const SlopeField& f_;
-  JumpField jumps_;
-  const Thresholds& t_;
-  const RowKernels& kernels_;
-  ImageView<std::uint8_t> marks_;
-  JumpBatch batch_;
+  RowChunks chunks_;
+  const Views& views_;
+  const EdgeScratch& scratch_;
+  std::array<std::size_t, kChunkCountMax> counts_{};
 };
 
 }  // namespace
@@ -202,7 +302,7 @@ void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept {
 Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::uint8_t> missing,
                          double cell_mm, const EdgeConfig& config, Arena& scratch,
                          ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out,
-                         VectorPath path) noexcept {
+                         VectorPath path, Executor& executor) noexcept {
   const Status valid = validate(config);
   if (valid != Status::kOk) return valid;
   if (!(cell_mm > 0.0) || !(cell_mm < 1e6)) return Status::kInvalidArgument;
@@ -215,20 +315,19 @@ Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::
   }
   const ArenaScope scope(scratch);
   const EdgeScratch s = lay_out(scratch, filled_mm.width_px, filled_mm.height_px);
-  if (s.stack.empty()) return Status::kOutOfMemory;
+  if (scratch.failed()) return Status::kOutOfMemory;
 
-  const SlopeField field(filled_mm, missing, s.slope_x, s.slope_y);
   const Thresholds thresholds{config.jump_low_mm,
                               config.jump_high_mm,
                               tangent(config.crease_low_rad),
                               tangent(config.crease_high_rad),
                               static_cast<float>(cell_mm),
                               config.crease_high_rad > 0.0F};
-  EdgeFinder finder(field, thresholds, row_kernels(path), kind_out);
-  finder.mark(s.slope_x, s.slope_y);
-  finder.judge();
-  keep_connected(kind_out, s.stack, path);
-  return finder.collect(out);
+  const Views views{filled_mm, missing, kind_out};
+  TopLists lists(views, s);
+  if (!lists.find(thresholds, path, executor)) return Status::kTooLarge;
+  lists.keep_connected();
+  return lists.collect(config.jump_low_mm, out);
 }
 
 }  // namespace flatpose::image

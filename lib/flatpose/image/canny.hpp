@@ -23,6 +23,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/executor.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/status.hpp"
@@ -48,8 +49,8 @@ struct EdgeConfig {
 /// kOk, or kInvalidArgument when a field is outside its range.
 Status validate(const EdgeConfig& config) noexcept;
 
-/// Takes (and leaves taken) the scratch of detect_edges, also from a measuring arena: 12 bytes a
-/// cell.
+/// Takes (and leaves taken) the scratch of detect_edges, also from a measuring arena: 16 bytes a
+/// cell, and up to some 600 rows of 16 bytes a cell for the slopes of chunks side by side.
 void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept;
 
 /// Writes every edge to `out`, row by row, its kind to the same cell of `kind_out` (all else
@@ -59,11 +60,13 @@ void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept;
 /// falls from a missing cell was never seen and is no edge. Shape: `filled_mm`, `missing` (as
 /// fill_missing writes them) and `kind_out` alike. Units: mm, cells.  Cost: linear in cells, about
 /// 1 us an edge. Memory: `scratch`, given back. Fails: kInvalidArgument (config, cell_mm),
-/// kShapeMismatch, kOutOfMemory; kTooLarge when a side is beyond kEdgeMapSizeMax_px, or when `out`
-/// is full: then `out` holds the first edges and `kind_out` all.  Thread: reentrant.
+/// kShapeMismatch, kOutOfMemory; kTooLarge when a side is beyond kEdgeMapSizeMax_px, when more than
+/// half of all cells are tops of ridges, or when `out` is full: then `out` holds the first edges
+/// and `kind_out` all.  Thread: reentrant; rows are shared out over `executor`.
 Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::uint8_t> missing,
                          double cell_mm, const EdgeConfig& config, Arena& scratch,
                          ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out,
-                         VectorPath path = VectorPath::kPortable) noexcept;
+                         VectorPath path = VectorPath::kPortable,
+                         Executor& executor = callers_thread) noexcept;
 
 }  // namespace flatpose::image

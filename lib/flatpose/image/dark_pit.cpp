@@ -5,9 +5,11 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "flatpose/image/glance.hpp"
 #include "flatpose/image/lost_points.hpp"
+#include "flatpose/image/row_kernels.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -23,12 +25,17 @@ constexpr std::uint8_t kShadowRising = 4;
 
 struct DarkPitScratch {
   ImageView<std::uint8_t> marks;
-  std::span<std::int32_t> side_px;  // by column: of the largest square of pits that ends there
+  std::span<std::uint8_t> wide;     // by column: whether a run as wide as a pit begins there
+  std::span<std::uint8_t> has_pit;  // by row
+  // By column: of the largest square of pits that ends there; of this row and that above.
+  std::span<std::uint8_t> side_px;
 };
 
 DarkPitScratch lay_out(Arena& arena, int width_px, int height_px) noexcept {
-  return {arena.take_image<std::uint8_t>(width_px, height_px),
-          arena.take<std::int32_t>(static_cast<std::size_t>(width_px))};
+  const auto width = static_cast<std::size_t>(width_px);
+  return {arena.take_image<std::uint8_t>(width_px, height_px), arena.take<std::uint8_t>(width),
+          arena.take<std::uint8_t>(static_cast<std::size_t>(height_px)),
+          arena.take<std::uint8_t>(2 * width)};
 }
 
 // Whether most of the cells beyond the end of a gap, `step` apart from `first` on, were seen: where
@@ -41,15 +48,18 @@ bool is_firm(const std::uint8_t* first, std::ptrdiff_t step, int count) noexcept
   return seen_count >= kBesideSeenMin;
 }
 
-void mark_level_rows(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
-                     int side_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
+void mark_level_rows(const DarkPitScratch& s, ImageView<const std::uint8_t> missing,
+                     ImageView<const float> filled_mm, int side_min_px, float level_mm,
+                     const RowKernels& kernels) noexcept {
   for (int y = 0; y < missing.height_px; ++y) {
     const std::uint8_t* row = missing.row(y);
     const float* z_mm = filled_mm.row(y);
-    std::uint8_t* mark = marks.row(y);
+    std::uint8_t* mark = s.marks.row(y);
     std::fill_n(mark, missing.width_px, std::uint8_t{0});
-    for_each_run(row, missing.width_px, [&](int begin, int end) {
-      if (end - begin < side_min_px || begin == 0 || !is_firm(row + begin - 1, -1, begin) ||
+    if (!kernels.find_wide(row, missing.width_px, side_min_px, s.wide.data())) continue;
+    for_each_run(s.wide.data(), missing.width_px, [&](int begin, int last_begin) {
+      const int end = last_begin + side_min_px - 1;
+      if (begin == 0 || !is_firm(row + begin - 1, -1, begin) ||
           !is_firm(row + end, 1, missing.width_px - end)) {
         return;
       }
@@ -87,8 +97,12 @@ void mark_level_columns(ImageView<const std::uint8_t> missing, ImageView<const f
   }
 }
 
-bool has_pits(ImageView<const std::uint8_t> marks, int y) noexcept {
-  return std::memchr(marks.row(y), kPit, static_cast<std::size_t>(marks.width_px)) != nullptr;
+void note_rows_with_pits(const DarkPitScratch& s) noexcept {
+  const auto width = static_cast<std::size_t>(s.marks.width_px);
+  for (int y = 0; y < s.marks.height_px; ++y) {
+    s.has_pit[static_cast<std::size_t>(y)] =
+        std::memchr(s.marks.row(y), kPit, width) != nullptr ? std::uint8_t{1} : std::uint8_t{0};
+  }
 }
 
 // A shadow lies beside what casts it: where a diagonal (dx, 1) of missing cells ends at something
@@ -137,28 +151,33 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
       }
     }
   };
-  std::fill(s.side_px.begin(), s.side_px.end(), 0);
+  constexpr int kSideMax_px = 255;
+  const auto width = static_cast<std::size_t>(missing.width_px);
+  std::uint8_t* above_px = s.side_px.data();
+  std::uint8_t* here_px = above_px + width;
+  std::fill(s.side_px.begin(), s.side_px.end(), std::uint8_t{0});
   bool above_is_empty = true;
   for (int y = 0; y < missing.height_px; ++y) {
-    const bool is_empty = !has_pits(s.marks, y);
+    const bool is_empty = s.has_pit[static_cast<std::size_t>(y)] == 0;
     if (is_empty && above_is_empty) continue;
     above_is_empty = is_empty;
-    std::int32_t left_px = 0;
-    std::int32_t between_px = 0;
-    for (int x = 0; x < missing.width_px; ++x) {
-      const std::int32_t above_px = s.side_px[x];
-      left_px = s.marks(x, y) == kPit ? 1 + std::min({left_px, between_px, above_px}) : 0;
-      s.side_px[x] = left_px;
-      between_px = above_px;
-      if (left_px >= side_min_px) lower(x, y);
-    }
+    std::fill_n(here_px, width, std::uint8_t{0});
+    for_each_set(s.marks.row(y), missing.width_px, [&](int x) {
+      if (s.marks(x, y) != kPit) return;
+      const int smallest_px =
+          x > 0 ? std::min({here_px[x - 1], above_px[x - 1], above_px[x]}) : std::uint8_t{0};
+      here_px[x] = static_cast<std::uint8_t>(std::min(1 + smallest_px, kSideMax_px));
+      if (here_px[x] >= side_min_px) lower(x, y);
+    });
+    std::swap(here_px, above_px);
   }
 }
 
 // What adjoins a pit and could be one belongs to it: the tips of the gap between three that touch
 // are narrower than any square. Sweeps down and up reach as far as the gap turns back twice.
-void lower_adjoining(ImageView<const std::uint8_t> marks, float drop_mm,
-                     ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+void lower_adjoining(const DarkPitScratch& s, float drop_mm, ImageView<std::uint8_t> missing,
+                     ImageView<float> filled_mm) noexcept {
+  const ImageView<const std::uint8_t> marks = s.marks;
   const auto is_lowered = [&](int x, int y) {
     return missing.contains(x, y) && missing(x, y) == kDarkPit;
   };
@@ -174,14 +193,14 @@ void lower_adjoining(ImageView<const std::uint8_t> marks, float drop_mm,
   for (int round = 0; has_grown && round < kRoundCount; ++round) {
     has_grown = false;
     for (int y = 0; y < missing.height_px; ++y) {
-      if (!has_pits(marks, y)) continue;
+      if (s.has_pit[static_cast<std::size_t>(y)] == 0) continue;
       for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, -1); });
-      for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, -1);
+      for_each_set_backward(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, 1, -1); });
     }
     for (int y = missing.height_px - 1; y >= 0; --y) {
-      if (!has_pits(marks, y)) continue;
+      if (s.has_pit[static_cast<std::size_t>(y)] == 0) continue;
       for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, 1); });
-      for (int x = missing.width_px - 1; x >= 0; --x) adjoin(x, y, 1, 1);
+      for_each_set_backward(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, 1, 1); });
     }
   }
 }
@@ -193,7 +212,7 @@ void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcep
 }
 
 Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<std::uint8_t> missing,
-                       ImageView<float> filled_mm) noexcept {
+                       ImageView<float> filled_mm, VectorPath path) noexcept {
   if (!same_shape(missing, filled_mm)) return Status::kShapeMismatch;
   if (!(config.level_mm > 0.0F) || !(config.drop_mm > config.level_mm))
     return Status::kInvalidArgument;
@@ -202,13 +221,14 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
   const DarkPitScratch s = lay_out(scratch, missing.width_px, missing.height_px);
   if (scratch.failed()) return Status::kOutOfMemory;
 
-  const int side_min_px = accidental_side_px(missing, kSideMin_px);
-  mark_level_rows(missing, filled_mm, side_min_px, config.level_mm, s.marks);
+  const int side_min_px = accidental_side_px(missing, kSideMin_px, path);
+  mark_level_rows(s, missing, filled_mm, side_min_px, config.level_mm, row_kernels(path));
   mark_level_columns(missing, filled_mm, side_min_px, config.level_mm, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
   clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
+  note_rows_with_pits(s);
   lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm);
-  lower_adjoining(s.marks, config.drop_mm, missing, filled_mm);
+  lower_adjoining(s, config.drop_mm, missing, filled_mm);
   return Status::kOk;
 }
 

@@ -8,6 +8,7 @@
 #include "flatpose/core/arena.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -29,7 +30,7 @@ void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcep
 /// `scratch`, given back.  Fails: kShapeMismatch, kInvalidArgument (config), kOutOfMemory.  Thread:
 /// reentrant.
 [[nodiscard]] Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch,
-                                     ImageView<std::uint8_t> missing,
-                                     ImageView<float> filled_mm) noexcept;
+                                     ImageView<std::uint8_t> missing, ImageView<float> filled_mm,
+                                     VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

@@ -86,6 +86,24 @@ void for_each_set(const std::uint8_t* row, int width_px, const Body& body) noexc
   }
 }
 
+/// As for_each_set(), from the end of the row to its beginning.
+template <class Body>
+void for_each_set_backward(const std::uint8_t* row, int width_px, const Body& body) noexcept {
+  constexpr int kGlance = 8;
+  int end = width_px;
+  for (; end % kGlance != 0; --end) {
+    if (row[end - 1] != 0) body(end - 1);
+  }
+  for (; end > 0; end -= kGlance) {
+    std::uint64_t glance = eight_from(row + end - kGlance);
+    while (glance != 0) {
+      const int byte = 7 - std::countl_zero(glance) / 8;
+      glance &= ~(std::uint64_t{0xFF} << (8 * byte));
+      body(end - kGlance + byte);
+    }
+  }
+}
+
 /// Calls body(begin, end) for each run of nonzero bytes.
 template <class Body>
 void for_each_run(const std::uint8_t* row, int width_px, const Body& body) noexcept {

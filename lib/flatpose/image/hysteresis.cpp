@@ -4,8 +4,6 @@
 #include <cstddef>
 
 #include "flatpose/image/edge.hpp"
-#include "flatpose/image/glance.hpp"
-#include "flatpose/image/row_kernels.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -51,16 +49,9 @@ class Flood {
 
 }  // namespace
 
-void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack,
-                    VectorPath path) noexcept {
-  Flood flood(marks, stack);
-  for (int y = 0; y < marks.height_px; ++y) {
-    for_each_set(marks.row(y), marks.width_px, [&](int x) {
-      if ((marks(x, y) & kStrongMark) != 0) flood.keep(x, y);
-    });
-  }
-  const RowKernels& kernels = row_kernels(path);
-  for (int y = 0; y < marks.height_px; ++y) kernels.drop_weak(marks.width_px, marks.row(y));
+void keep_connected(ImageView<std::uint8_t> marks, int x, int y,
+                    std::span<std::int32_t> stack) noexcept {
+  Flood(marks, stack).keep(x, y);
 }
 
 }  // namespace flatpose::image

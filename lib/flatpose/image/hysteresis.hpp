@@ -5,7 +5,6 @@
 #include <span>
 
 #include "flatpose/core/image_view.hpp"
-#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -14,11 +13,12 @@ inline constexpr std::uint8_t kWeakMark = 0x40;
 inline constexpr std::uint8_t kStrongMark = 0x80;
 inline constexpr std::uint8_t kKindBits = 0x0F;
 
-/// Takes the marks off: what is strong, or weak and 8-connected to a strong cell through weak ones
-/// of its family (jumps of both kinds, or creases), keeps its kind; all else becomes 0.
-/// Shape: sides up to 32767 cells; `stack` has room for every cell; the outermost ring carries no
-/// marks. Cost: linear in cells.  Thread: reentrant.
-void keep_connected(ImageView<std::uint8_t> marks, std::span<std::int32_t> stack,
-                    VectorPath path = VectorPath::kPortable) noexcept;
+/// Takes the marks off the strong cell (x, y), and off the weak and strong ones of its family
+/// (jumps of both kinds, or creases) that are 8-connected to it through such cells: they keep their
+/// kind. What is weak when all strong cells are through has no strong one. Shape: sides up to 32767
+/// cells; `stack` has room for every marked cell; the outermost ring carries no marks. Cost: linear
+/// in marked cells.  Thread: reentrant.
+void keep_connected(ImageView<std::uint8_t> marks, int x, int y,
+                    std::span<std::int32_t> stack) noexcept;
 
 }  // namespace flatpose::image

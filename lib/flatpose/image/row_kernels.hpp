@@ -37,16 +37,23 @@ struct RowKernels {
   /// What is not missing is carried on.
   void (*carry_up)(const std::uint8_t* missing, const float* filled_mm, int width_px,
                    float* carried) noexcept;
+  /// How many cells of a row, the border left out, are missing alone.
+  int (*count_single)(const std::uint8_t* above, const std::uint8_t* here,
+                      const std::uint8_t* below, int width_px) noexcept;
+  /// Tells of each cell whether it and the next ones, `least_px` in all, are missing; returns
+  /// whether any is.
+  bool (*find_wide)(const std::uint8_t* missing, int width_px, int least_px,
+                    std::uint8_t* wide) noexcept;
   /// Sobel's slopes of the middle row.
   void (*sobel)(const ThreeRows& height_mm, int width_px, float* slope_x, float* slope_y) noexcept;
+  /// Puts the numbers of two rows side by side.
+  void (*interleave)(const float* first, const float* second, int count, float* pairs) noexcept;
   /// Turns slopes into the first two components of unit normals.
   void (*normalise)(float scale_x, float scale_y, int width_px, float* x, float* y) noexcept;
   /// Marks the cells at which the slope, less that of both sides, is at least `least`; rows are
   /// kBeside_px apart, held off the border. Clears the marks of all others.
   void (*mark_jumps)(const float* slope_x, const ThreeRows& slope_y, int width_px, float least,
                      std::uint8_t* marks) noexcept;
-  /// Marks become kinds: those that are still weak become none.
-  void (*drop_weak)(int width_px, std::uint8_t* marks) noexcept;
 
   /// Makes one cell of two by two of two rows: the mean of those at most `jump_mm` below the
   /// highest. An odd last cell is halved with itself.
@@ -57,8 +64,9 @@ struct RowKernels {
   void (*shorten_forward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
   void (*shorten_backward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
 
+  /// Finds the cells of a batch that are jumps of at least `jump_low_mm`; measures those found.
   void (*test_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
-  void (*measure_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
+  void (*measure_jumps)(const JumpField& field, JumpBatch& batch) noexcept;
 };
 
 /// The loops for a path; the portable ones where this build has no other.

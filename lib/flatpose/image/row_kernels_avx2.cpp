@@ -2,7 +2,7 @@
 #include "flatpose/image/row_kernels.inc"
 
 namespace flatpose::image {
-const RowKernels kAvx2RowKernels = {carry_down,       carry_up,   sobel,        normalise,
-                                    mark_jumps,       drop_weak,  halve,        shorten_forward,
-                                    shorten_backward, test_jumps, measure_jumps};
+const RowKernels kAvx2RowKernels = {
+    carry_down, carry_up, count_single,    find_wide,        sobel,      interleave,   normalise,
+    mark_jumps, halve,    shorten_forward, shorten_backward, test_jumps, measure_jumps};
 }  // namespace flatpose::image

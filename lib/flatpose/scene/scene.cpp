@@ -82,8 +82,8 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   const Status filled = image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing,
                                             arena, config.vector_path);
   if (filled != Status::kOk) return filled;
-  if (const Status s =
-          image::lower_dark_pits(pit_config(config), arena, scene.missing, scene.filled_mm);
+  if (const Status s = image::lower_dark_pits(pit_config(config), arena, scene.missing,
+                                              scene.filled_mm, config.vector_path);
       s != Status::kOk) {
     return s;
   }

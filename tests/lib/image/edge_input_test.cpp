@@ -38,7 +38,9 @@ TEST(EdgeMap, WildHeightsAreReadSafely) {
   Image<std::uint8_t> missing(40, 40);
   Image<std::uint8_t> kinds(40, 40);
   std::vector<EdgePoint> out(1600);
-  std::vector<std::byte> memory(40 * 40 * 12 + 256);
+  Arena measuring = Arena::measuring();
+  reserve_edge_scratch(measuring, 40, 40);
+  std::vector<std::byte> memory(measuring.required_bytes());
   Arena arena{std::span(memory)};
   EXPECT_TRUE(detect_edges(z.view(), missing.view(), 1.0, config, arena, kinds.view(), out));
 }

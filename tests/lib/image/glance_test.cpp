@@ -36,6 +36,9 @@ TEST(Glance, FindsWhatOneLookAtATimeFinds) {
     for_each_set(row.data(), w, [&](int x) { found.push_back(x); });
     for_each_run(row.data(), w, [&](int begin, int end) { runs.emplace_back(begin, end); });
     ASSERT_EQ(found, expected);
+    found.clear();
+    for_each_set_backward(row.data(), w, [&](int x) { found.push_back(x); });
+    ASSERT_EQ(found, std::vector<int>(expected.rbegin(), expected.rend()));
     ASSERT_EQ(runs, expected_runs);
   }
 }

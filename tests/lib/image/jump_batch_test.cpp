@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <random>
+#include <vector>
 
 #include "flatpose/image/row_kernels.hpp"
 #include "flatpose/image/sobel.hpp"
@@ -53,76 +54,91 @@ bool same_bits(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
 
-/// Calls body(batch) for batches of all inner cells, of many sizes.
+/// Calls body(field, batch) for batches of all inner cells, of many sizes, in bands of rows.
 template <class Body>
-void for_each_batch(const Ground& ground, const Body& body) {
-  JumpBatch batch;
+void for_each_batch(const Ground& ground, VectorPath path, const Body& body) {
+  constexpr int kBandRows = 13;
+  const int w = ground.height.width(), h = ground.height.height();
+  std::vector<std::byte> memory(1 << 20);
   int size = 1;
-  const auto flush = [&] {
-    batch.pad();
-    body(batch);
-    batch.count = 0;
-    size = size * 3 % JumpBatch::kCountMax + 1;
-  };
-  for (int y = 1; y + 1 < ground.height.height(); ++y) {
-    for (int x = 1; x + 1 < ground.height.width(); ++x) {
-      batch.add(x, y);
-      if (batch.count == size) flush();
+  for (int begin = 1; begin + 1 < h; begin += kBandRows) {
+    const int end = std::min(begin + kBandRows, h - 1);
+    Arena arena{std::span(memory)};
+    SlopeBand slopes = SlopeBand::take(arena, w, end - begin + 2 * SlopeBand::kHalo_px);
+    slopes.fill(ground.height.view(), begin - SlopeBand::kHalo_px, end + SlopeBand::kHalo_px, path);
+    const JumpField field(ground.height.view(), ground.missing.view(), slopes);
+    JumpBatch batch;
+    const auto flush = [&] {
+      batch.pad();
+      body(field, batch);
+      batch.count = 0;
+      size = size * 3 % JumpBatch::kCountMax + 1;
+    };
+    for (int y = begin; y < end; ++y) {
+      for (int x = 1; x + 1 < w; ++x) {
+        batch.add(x, y);
+        if (batch.count == size) flush();
+      }
     }
+    if (batch.count > 0) flush();
   }
-  flush();
 }
 
 constexpr struct { int width_px, height_px; } kSizes[] = {{61, 47}, {9, 30}, {30, 5}, {3, 3}};
 
-TEST(JumpBatch, TestsAsOneAtATime) {
-  int found_count = 0;
+/// Calls body(slow field, field, batch) for all grounds, paths and batches.
+template <class Body>
+void for_each_ground(const Body& body) {
   for (const auto [width_px, height_px] : kSizes) {
     for (unsigned seed = 0; seed < 6; ++seed) {
       const Ground ground(width_px, height_px, seed);
-      const SlopeField field = ground.field();
       for (const VectorPath path : vector_paths()) {
-        for_each_batch(ground, [&](JumpBatch& batch) {
-          row_kernels(path).test_jumps(JumpField(field), kLow_mm, batch);
-          for (int i = 0; i < batch.count; ++i) {
-            const slow::Jump jump = slow::test_jump(field, batch.column[i], batch.row[i], kLow_mm);
-            ASSERT_TRUE(same_bits(batch.step_mm[i], jump.step_mm))
-                << batch.step_mm[i] << ' ' << jump.step_mm << ' ' << static_cast<int>(path);
-            if (!jump.found) continue;
-            ++found_count;
-            ASSERT_EQ(batch.below_is_missing[i] != 0, jump.below_is_missing);
-          }
+        for_each_batch(ground, path, [&](const JumpField& field, JumpBatch& batch) {
+          row_kernels(path).test_jumps(field, kLow_mm, batch);
+          body(ground.field(), field, path, batch);
         });
       }
     }
   }
-  EXPECT_GT(found_count, 800 * path_count());
+}
+
+TEST(JumpBatch, TestsAsOneAtATime) {
+  int found_count = 0;
+  for_each_ground([&](const SlopeField& slow_field, const JumpField&, VectorPath path,
+                      JumpBatch& batch) {
+    int next = 0;
+    for (int i = 0; i < batch.count; ++i) {
+      const slow::Jump jump = slow::test_jump(slow_field, batch.column[i], batch.row[i], kLow_mm);
+      if (!jump.found || !(jump.step_mm >= kLow_mm)) continue;
+      ASSERT_LT(next, batch.jump_count);
+      ASSERT_EQ(batch.index[next], i) << static_cast<int>(path);
+      ASSERT_TRUE(same_bits(batch.tested_step_mm[next], jump.step_mm));
+      ASSERT_EQ(batch.below_is_missing[next] != 0, jump.below_is_missing);
+      ++next;
+      ++found_count;
+    }
+    ASSERT_EQ(next, batch.jump_count);
+  });
+  EXPECT_GT(found_count, 500 * path_count());
 }
 
 TEST(JumpBatch, MeasuresAsOneAtATime) {
   int measured_count = 0;
-  for (const auto [width_px, height_px] : kSizes) {
-    for (unsigned seed = 0; seed < 6; ++seed) {
-      const Ground ground(width_px, height_px, seed);
-      const SlopeField field = ground.field();
-      for (const VectorPath path : vector_paths()) {
-        for_each_batch(ground, [&](JumpBatch& batch) {
-          row_kernels(path).measure_jumps(JumpField(field), kLow_mm, batch);
-          for (int i = 0; i < batch.count; ++i) {
-            if (!slow::test_jump(field, batch.column[i], batch.row[i], kLow_mm).found) continue;
-            const slow::Measured m =
-                slow::measure_jump(field, batch.column[i], batch.row[i], kLow_mm);
-            ++measured_count;
-            ASSERT_TRUE(same_bits(batch.x_px[i], m.at.x) && same_bits(batch.y_px[i], m.at.y));
-            ASSERT_TRUE(same_bits(batch.fall_x[i], m.fall.x) &&
-                        same_bits(batch.fall_y[i], m.fall.y));
-            ASSERT_TRUE(same_bits(batch.step_mm[i], m.step_mm));
-          }
-        });
-      }
-    }
-  }
-  EXPECT_GT(measured_count, 800 * path_count());
+  for_each_ground(
+      [&](const SlopeField& slow_field, const JumpField& field, VectorPath path, JumpBatch& batch) {
+        row_kernels(path).measure_jumps(field, batch);
+        for (int i = 0; i < batch.jump_count; ++i) {
+          const int cell = batch.index[i];
+          const slow::Measured m =
+              slow::measure_jump(slow_field, batch.column[cell], batch.row[cell], kLow_mm);
+          ++measured_count;
+          ASSERT_TRUE(same_bits(batch.x_px[i], m.at.x) && same_bits(batch.y_px[i], m.at.y))
+              << static_cast<int>(path);
+          ASSERT_TRUE(same_bits(batch.fall_x[i], m.fall.x) && same_bits(batch.fall_y[i], m.fall.y));
+          ASSERT_TRUE(same_bits(batch.step_mm[i], m.step_mm));
+        }
+      });
+  EXPECT_GT(measured_count, 500 * path_count());
 }
 
 }  // namespace

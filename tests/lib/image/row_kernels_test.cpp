@@ -9,7 +9,6 @@
 #include <cmath>
 #include <vector>
 
-#include "flatpose/image/hysteresis.hpp"
 #include "tests/lib/image/image.hpp"
 #include "tests/lib/search/vector_paths.hpp"
 
@@ -133,15 +132,50 @@ TEST(RowKernels, MarkWhereTheSlopeStandsOut) {
   EXPECT_GT(marked_count, 500);
 }
 
-TEST(RowKernels, DropWhatIsStillWeak) {
-  for_each_path_and_width(0.0, [](const RowKernels& kernels, int w, Image<float>&) {
-    Bytes marks(w), expected(w);
-    for (int x = 0; x < w; ++x) {
-      marks[x] = static_cast<std::uint8_t>(x % 3 == 0 ? kWeakMark | (x % 4) : x % 4);
-      expected[x] = static_cast<std::uint8_t>(x % 3 == 0 ? 0 : x % 4);
+TEST(RowKernels, FindWhatIsMissingAloneOrWide) {
+  std::mt19937 generator(3);
+  for (const VectorPath path : vector_paths()) {
+    for (int w = 1; w <= kWidthMax_px; ++w) {
+      Bytes rows[3];
+      for (Bytes& row : rows) {
+        for (int x = 0; x < w; ++x) row.push_back(generator() % 4 == 0 ? 0 : 1 + generator() % 2);
+      }
+      const Bytes& here = rows[1];
+      int single_count = 0;
+      for (int x = 1; x + 1 < w; ++x) {
+        const bool beside = ((here[x - 1] | here[x + 1] | rows[0][x] | rows[2][x]) & 1) != 0;
+        single_count += (here[x] & 1) != 0 && !beside ? 1 : 0;
+      }
+      ASSERT_EQ(row_kernels(path).count_single(rows[0].data(), here.data(), rows[2].data(), w),
+                single_count);
+      for (int least = 3; least <= 8; ++least) {
+        Bytes wide(w, 9), expected(w);
+        bool any = false;
+        for (int x = 0; x < w; ++x) {
+          bool all = x + least <= w;
+          for (int i = 0; all && i < least; ++i) all = here[x + i] != 0;
+          expected[x] = all ? 1 : 0;
+          any |= all;
+        }
+        const bool found = row_kernels(path).find_wide(here.data(), w, least, wide.data());
+        // It may see three where more are asked for.
+        ASSERT_TRUE(found || !any);
+        if (found) {
+          ASSERT_EQ(wide, expected);
+        }
+      }
     }
-    kernels.drop_weak(w, marks.data());
-    ASSERT_EQ(marks, expected);
+  }
+}
+
+TEST(RowKernels, PutNumbersSideBySide) {
+  for_each_path_and_width(0.0, [](const RowKernels& kernels, int w, Image<float>& z) {
+    Floats pairs(2 * w);
+    kernels.interleave(z.view().row(0), z.view().row(1), w, pairs.data());
+    for (int x = 0; x < w; ++x) {
+      ASSERT_EQ(pairs[2 * x], z(x, 0));
+      ASSERT_EQ(pairs[2 * x + 1], z(x, 1));
+    }
   });
 }
 

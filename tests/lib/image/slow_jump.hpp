@@ -114,17 +114,22 @@ constexpr int kBell_px = 4;
 constexpr std::array<float, 2 * kBell_px + 1> kBell = {1, 2, 3, 4, 5, 4, 3, 2, 1};
 
 // Sum of the slopes around a place that point with the ridge, weighted by a bell: the direction of
-// the contour along some cells of it.
+// the contour along some cells of it. Columns first, then the columns' sums by halves.
 inline Vec2f mean_fall(const SlopeField& f, const Ridge& r, int column, int row) noexcept {
   const float least = 0.25F * dot(r.surface_slope - f.slope_at(r.at), r.fall);
-  Vec2f total{};
-  for (int dy = -kBell_px; dy <= kBell_px; ++dy) {
-    for (int dx = -kBell_px; dx <= kBell_px; ++dx) {
+  std::array<Vec2f, 16> totals{};
+  for (int dx = -kBell_px; dx <= kBell_px; ++dx) {
+    for (int dy = -kBell_px; dy <= kBell_px; ++dy) {
       const Vec2f fall = r.surface_slope - cell_slope(f, column + dx, row + dy);
       if (!(dot(fall, r.fall) >= least)) continue;
+      Vec2f& total = totals[dx + kBell_px];
       total = total + (kBell[dx + kBell_px] * kBell[dy + kBell_px]) * fall;
     }
   }
+  for (std::size_t half = totals.size() / 2; half > 0; half /= 2) {
+    for (std::size_t i = 0; i < half; ++i) totals[i] = totals[i] + totals[i + half];
+  }
+  const Vec2f total = totals[0];
   const float length = norm(total);
   return length > 0.0F && length < kFinite ? (1.0F / length) * total : r.fall;
 }
