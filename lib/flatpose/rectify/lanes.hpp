@@ -90,6 +90,63 @@ inline Ints gather(const std::int32_t* base, Ints index) noexcept {
   return Ints{base[index[0]], base[index[1]], base[index[2]], base[index[3]]};
 #endif
 }
+struct Pairs {
+  Floats first, second;
+};
+template <int... K>
+inline Pairs every_second(const Floats& low, const Floats& high,
+                          std::integer_sequence<int, K...>) noexcept {
+  return {__builtin_shufflevector(low, high, 2 * K...),
+          __builtin_shufflevector(low, high, 2 * K + 1 ...)};
+}
+/// base[kStep * index] and the number after it for each lane.
+template <int kStep>
+inline Pairs gather_pairs(const float* base, Ints index) noexcept {
+  static_assert(kStep == 1 || kStep == 2);
+#if FLATPOSE_LANES == 16
+  using Eight = std::int32_t __attribute__((vector_size(32)));
+  const auto half = [base](Eight at) {
+    return reinterpret_cast<Floats>(
+        _mm512_mask_i32gather_pd(__m512d{}, 0xFF, reinterpret_cast<__m256i>(at), base,
+                                 kStep * static_cast<int>(sizeof(float))));
+  };
+  return every_second(half(__builtin_shufflevector(index, index, 0, 1, 2, 3, 4, 5, 6, 7)),
+                      half(__builtin_shufflevector(index, index, 8, 9, 10, 11, 12, 13, 14, 15)),
+                      std::make_integer_sequence<int, kLanes>{});
+#elif FLATPOSE_LANES == 8
+  const __m256i at = reinterpret_cast<__m256i>(index);
+  const __m256d every = reinterpret_cast<__m256d>(Ints{} - 1);
+  const auto half = [base, every](__m128i four) {
+    return reinterpret_cast<Floats>(
+        _mm256_mask_i32gather_pd(__m256d{}, reinterpret_cast<const double*>(base), four, every,
+                                 kStep * static_cast<int>(sizeof(float))));
+  };
+  return every_second(half(_mm256_castsi256_si128(at)), half(_mm256_extracti128_si256(at, 1)),
+                      std::make_integer_sequence<int, kLanes>{});
+#else
+  const Ints at = kStep * index;
+  return {Floats{base[at[0]], base[at[1]], base[at[2]], base[at[3]]},
+          Floats{base[at[0] + 1], base[at[1] + 1], base[at[2] + 1], base[at[3] + 1]}};
+#endif
+}
+/// The bytes base[index] of an image of `size` bytes, at least 4.
+inline Ints gather_bytes(const std::uint8_t* base, [[maybe_unused]] std::int32_t size,
+                         Ints index) noexcept {
+#if FLATPOSE_LANES > 4
+  // Four bytes at once, none of them beyond the end.
+  const Ints first = smaller(index, size - 4 - Ints{});
+#if FLATPOSE_LANES == 16
+  const Ints four = reinterpret_cast<Ints>(
+      _mm512_mask_i32gather_epi32(__m512i{}, 0xFFFF, reinterpret_cast<__m512i>(first), base, 1));
+#else
+  const Ints four = reinterpret_cast<Ints>(_mm256_i32gather_epi32(
+      reinterpret_cast<const int*>(base), reinterpret_cast<__m256i>(first), 1));
+#endif
+  return four >> (8 * (index - first)) & 0xFF;
+#else
+  return Ints{base[index[0]], base[index[1]], base[index[2]], base[index[3]]};
+#endif
+}
 /// A mask with a bit for each lane.
 inline unsigned bits(Ints mask) noexcept {
 #if FLATPOSE_LANES == 16
@@ -103,6 +160,21 @@ inline unsigned bits(Ints mask) noexcept {
   return vaddvq_u32(reinterpret_cast<uint32x4_t>(mask & kBits));
 #else
   return (mask[0] & 1U) | (mask[1] & 2U) | (mask[2] & 4U) | (mask[3] & 8U);
+#endif
+}
+/// Writes the lanes of a mask one close to the other, and whatever up to a vector's length.
+template <class Lanes, class T>
+inline void pack([[maybe_unused]] unsigned set, const Lanes& lanes, T* to) noexcept {
+#if FLATPOSE_LANES == 16
+  const __m512i together =
+      _mm512_maskz_compress_epi32(static_cast<__mmask16>(set), reinterpret_cast<__m512i>(lanes));
+  std::memcpy(to, &together, sizeof together);
+#else
+  int count = 0;
+  for (int k = 0; k < kLanes; ++k) {
+    to[count] = lanes[k];
+    count += static_cast<int>(set >> k & 1U);
+  }
 #endif
 }
 /// Calls body(lane) for each bit, from the lowest on.
