@@ -64,7 +64,7 @@ class Pipeline {
   // Survey the scan, choose the grid, rectify and find edges.
   Status look() noexcept {
     const Result<rectify::Survey> survey =
-        rectify::survey(scan_, frames_.work_T_scan, arena_, limits_.vector_path);
+        rectify::survey(scan_, frames_.work_T_scan, arena_, limits_.vector_path, host_.executor);
     if (!survey) return survey.status();
     if (1.0 - survey->missing_share < kValidShareMin) return end(Outcome::kScanPoor);
     const double pitch_mm = std::max(survey->pitch_along_row_mm, survey->pitch_along_column_mm);
@@ -82,7 +82,10 @@ class Pipeline {
     settings_.search.vector_path = limits_.vector_path;
     settings_.scene.vector_path = limits_.vector_path;
     settings_.polish.vector_path = limits_.vector_path;
-    const Status s = scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_);
+    settings_.scene.reach = &survey->reach;
+    const Status s =
+        scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_, host_.executor);
+    settings_.scene.reach = nullptr;  // it goes
     result_.timings.rectify_us = lap();
     if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
     if (s != Status::kOk) return s;

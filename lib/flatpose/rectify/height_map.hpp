@@ -22,6 +22,18 @@ struct Grid {
   [[nodiscard]] double y_of(double row) const noexcept { return y0_mm + row * cell_mm; }
 };
 
+/// Some of a grid's cells; half-open.
+struct CellWindow {
+  std::int32_t column_begin = 0;
+  std::int32_t column_end = 0;
+  std::int32_t row_begin = 0;
+  std::int32_t row_end = 0;
+};
+
+[[nodiscard]] inline CellWindow whole(const Grid& grid) noexcept {
+  return {0, grid.width_px, 0, grid.height_px};
+}
+
 inline constexpr std::int32_t kNoSource = -1;
 
 struct HeightMap {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flatpose/rectify/row_kernels.hpp"
+#include "flatpose/rectify/slots.hpp"
 #include "flatpose/rectify/triangle.hpp"
 
 namespace flatpose::rectify {
@@ -43,6 +44,7 @@ struct Scratch {
   ScanRow above, below;
   std::span<std::int32_t> lists;
 
+  Scratch() = default;
   Scratch(Arena& arena, int width_px) noexcept
       : above(ScanRow::take(arena, width_px)),
         below(ScanRow::take(arena, width_px)),
@@ -58,8 +60,17 @@ struct Scratch {
   }
 };
 
+using Scratches = std::array<Scratch, kChunkCountMax>;
+
+Scratches take_scratches(Arena& arena, int width_px) noexcept {
+  Scratches scratches;
+  for (Scratch& scratch : scratches) scratch = Scratch(arena, width_px);
+  return scratches;
+}
+
 /// Paints quad i, whose edges hold as given, one triangle after the other.
-void paint_triangles(const QuadStrip& s, int i, std::int32_t edges, const HeightMap& out) noexcept {
+void paint_triangles(const QuadStrip& s, int i, std::int32_t edges, const CellWindow& window,
+                     const HeightMap& out) noexcept {
   const unsigned triangles = kTrianglesOf[static_cast<unsigned>(edges)];
   const std::int32_t source = s.source_index + i * s.source_right;
   const auto above = [&](int k, std::int32_t index) {
@@ -71,21 +82,11 @@ void paint_triangles(const QuadStrip& s, int i, std::int32_t edges, const Height
   const Corner a = above(i, source), b = above(i + 1, source + s.source_right);
   const Corner c = below(i + 1, source + s.source_right + s.source_down);
   const Corner d = below(i, source + s.source_down);
-  if (triangles == (kAbc | kAcd)) return paint_quad(out, a, b, c, d);
-  if ((triangles & kAbc) != 0) paint_triangle(out, a, b, c);
-  if ((triangles & kAcd) != 0) paint_triangle(out, a, c, d);
-  if ((triangles & kAbd) != 0) paint_triangle(out, a, b, d);
-  if ((triangles & kBcd) != 0) paint_triangle(out, b, c, d);
-}
-
-void paint_strip(const RowKernels& kernels, const QuadStrip& strip, const EdgeLimits& limits,
-                 const Scratch& scratch, const HeightMap& out) noexcept {
-  const MapCells cells(out);
-  QuadList several = scratch.list(0);
-  QuadList rest = scratch.list(1);
-  kernels.paint_single_cells(strip, limits, cells, several);
-  kernels.paint_several_cells(strip, cells, several, rest);
-  for (int i = 0; i < rest.count; ++i) paint_triangles(strip, rest.quad[i], rest.edges[i], out);
+  if (triangles == (kAbc | kAcd)) return paint_quad(out, window, a, b, c, d);
+  if ((triangles & kAbc) != 0) paint_triangle(out, window, a, b, c);
+  if ((triangles & kAcd) != 0) paint_triangle(out, window, a, c, d);
+  if ((triangles & kAbd) != 0) paint_triangle(out, window, a, b, d);
+  if ((triangles & kBcd) != 0) paint_triangle(out, window, b, c, d);
 }
 
 /// Every step-th row and column.
@@ -97,6 +98,131 @@ RangeImageView thinned(const RangeImageView& scan, int step_px) noexcept {
   thin.row_stride_bytes *= step_px;
   return thin;
 }
+
+/// Parts of the map that are painted side by side: each by itself, from all strips that reach it.
+struct Parts {
+  bool by_rows = true;
+  RowChunks bands;
+
+  [[nodiscard]] CellWindow window(const Grid& grid, int part) const noexcept {
+    const std::int32_t begin = bands.begin(part), end = bands.end(part);
+    return by_rows ? CellWindow{0, grid.width_px, begin, end}
+                   : CellWindow{begin, end, 0, grid.height_px};
+  }
+};
+
+class Painter {
+ public:
+  Painter(const RangeImageView& scan, const Pose& work_T_scan, const PaintConfig& config,
+          const HeightMap& out) noexcept
+      : scan_(scan),
+        thin_(thinned(scan, config.step_px)),
+        step_px_(config.step_px),
+        reach_(config.reach != nullptr && config.reach->scan_height_px == scan.height_px
+                   ? config.reach
+                   : nullptr),
+        to_grid_(work_T_scan, out.grid),
+        limits_(edge_limits(config, out.grid.cell_mm)),
+        kernels_(row_kernels(config.vector_path)),
+        out_(out) {}
+
+  void run(const Scratches& scratches, Executor& executor) const noexcept {
+    const Parts parts = choose_parts();
+    Slots slots;
+    auto body = [&](int part) {
+      const int slot = slots.take();
+      Scratch scratch = scratches[static_cast<std::size_t>(slot)];
+      paint(parts.window(out_.grid, part), scratch);
+      slots.give_back(slot);
+    };
+    for_each_chunk(executor, parts.bands.count(), body);
+  }
+
+ private:
+  [[nodiscard]] int strip_count() const noexcept { return thin_.height_px - 1; }
+
+  /// Rows or columns, whichever fewer strips reach more than one of; the whole map at once when
+  /// most reach several.
+  [[nodiscard]] Parts choose_parts() const noexcept {
+    constexpr int kBlock_px = 16;  // cells in a cache line
+    const Grid& grid = out_.grid;
+    const Parts whole_map{true, RowChunks(grid.height_px, grid.height_px)};
+    if (reach_ == nullptr) return whole_map;
+    const Parts by_rows{true, RowChunks(grid.height_px, kBlock_px)};
+    const Parts by_columns{false, RowChunks(grid.width_px, kBlock_px)};
+    const int row_visits = visit_count(by_rows), column_visits = visit_count(by_columns);
+    if (2 * std::min(row_visits, column_visits) > 3 * strip_count()) return whole_map;
+    return row_visits <= column_visits ? by_rows : by_columns;
+  }
+  [[nodiscard]] int visit_count(const Parts& parts) const noexcept {
+    int count = 0;
+    for (int part = 0; part < parts.bands.count(); ++part) {
+      const CellWindow window = parts.window(out_.grid, part);
+      for (int strip = 0; strip < strip_count(); ++strip) count += reaches(strip, window) ? 1 : 0;
+    }
+    return count;
+  }
+
+  /// Whether a strip may cover the centre of a cell of the window.
+  [[nodiscard]] bool reaches(int strip, const CellWindow& window) const noexcept {
+    if (reach_ == nullptr) return true;
+    const Grid& grid = out_.grid;
+    const ScanReach::Box& a = reach_->box_of_row(strip * step_px_);
+    const ScanReach::Box& b = reach_->box_of_row((strip + 1) * step_px_);
+    constexpr double kSnapped_px = 1e-3;  // half a subcell, and more
+    const double slack_mm = kSnapped_px * grid.cell_mm + static_cast<double>(reach_->rounding_mm);
+    const auto meets = [slack_mm](float low_mm, float high_mm, double begin_mm, double end_mm) {
+      return static_cast<double>(high_mm) + slack_mm >= begin_mm &&
+             static_cast<double>(low_mm) - slack_mm <= end_mm;
+    };
+    return meets(std::min(a.x_min_mm, b.x_min_mm), std::max(a.x_max_mm, b.x_max_mm),
+                 grid.x_of(window.column_begin), grid.x_of(window.column_end - 1)) &&
+           meets(std::min(a.y_min_mm, b.y_min_mm), std::max(a.y_max_mm, b.y_max_mm),
+                 grid.y_of(window.row_begin), grid.y_of(window.row_end - 1));
+  }
+
+  void paint(const CellWindow& window, Scratch& s) const noexcept {
+    clear(out_, window);
+    int row_below = -1;
+    for (int strip = 0; strip < strip_count(); ++strip) {
+      if (!reaches(strip, window)) continue;
+      std::swap(s.above, s.below);
+      if (row_below != strip) kernels_.transform_row(to_grid_, thin_, strip, s.above);
+      row_below = strip + 1;
+      kernels_.transform_row(to_grid_, thin_, row_below, s.below);
+      paint_strip(strip, window, s);
+    }
+  }
+
+  void paint_strip(int strip_index, const CellWindow& window, const Scratch& s) const noexcept {
+    const QuadStrip strip{s.above.u.data(),
+                          s.above.v.data(),
+                          s.above.z_mm.data(),
+                          s.below.u.data(),
+                          s.below.v.data(),
+                          s.below.z_mm.data(),
+                          thin_.width_px - 1,
+                          strip_index * step_px_ * scan_.width_px,
+                          step_px_,
+                          step_px_ * scan_.width_px};
+    const MapCells cells(out_, window);
+    QuadList several = s.list(0);
+    QuadList rest = s.list(1);
+    kernels_.paint_single_cells(strip, limits_, cells, several);
+    kernels_.paint_several_cells(strip, cells, several, rest);
+    for (int i = 0; i < rest.count; ++i)
+      paint_triangles(strip, rest.quad[i], rest.edges[i], window, out_);
+  }
+
+  const RangeImageView& scan_;
+  RangeImageView thin_;
+  int step_px_;
+  const ScanReach* reach_;
+  ScanToGrid to_grid_;
+  EdgeLimits limits_;
+  const RowKernels& kernels_;
+  const HeightMap& out_;
+};
 
 }  // namespace
 
@@ -110,36 +236,19 @@ Status validate(const PaintConfig& config) noexcept {
 
 std::size_t paint_required_bytes(int scan_width_px) noexcept {
   Arena arena = Arena::measuring();
-  (void)Scratch(arena, std::max(scan_width_px, 0));
+  (void)take_scratches(arena, std::max(scan_width_px, 0));
   return arena.required_bytes();
 }
 
 Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintConfig& config,
-             Arena& scratch, const HeightMap& out) noexcept {
+             Arena& scratch, const HeightMap& out, Executor& executor) noexcept {
   if (const Status status = validate(config); status != Status::kOk) return status;
   if (const Status status = check_arguments(scan, work_T_scan, out); status != Status::kOk)
     return status;
   const ArenaScope scope(scratch);
-  const RangeImageView thin = thinned(scan, config.step_px);
-  Scratch s(scratch, thin.width_px);
+  const Scratches scratches = take_scratches(scratch, thinned(scan, config.step_px).width_px);
   if (scratch.failed()) return Status::kOutOfMemory;
-  clear(out);
-  if (scan.size() == 0) return Status::kOk;
-
-  const ScanToGrid to_grid(work_T_scan, out.grid);
-  const EdgeLimits limits = edge_limits(config, out.grid.cell_mm);
-  const RowKernels& kernels = row_kernels(config.vector_path);
-  kernels.transform_row(to_grid, thin, 0, s.below);
-  for (int row = 1; row < thin.height_px; ++row) {
-    std::swap(s.above, s.below);
-    kernels.transform_row(to_grid, thin, row, s.below);
-    const QuadStrip strip{s.above.u.data(),    s.above.v.data(),
-                          s.above.z_mm.data(), s.below.u.data(),
-                          s.below.v.data(),    s.below.z_mm.data(),
-                          thin.width_px - 1,   (row - 1) * config.step_px * scan.width_px,
-                          config.step_px,      config.step_px * scan.width_px};
-    paint_strip(kernels, strip, limits, s, out);
-  }
+  Painter(scan, work_T_scan, config, out).run(scratches, executor);
   return Status::kOk;
 }
 

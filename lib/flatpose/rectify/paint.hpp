@@ -20,11 +20,13 @@
 #include <cstddef>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/executor.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
+#include "flatpose/rectify/scan_reach.hpp"
 
 namespace flatpose::rectify {
 
@@ -40,6 +42,9 @@ struct PaintConfig {
   /// finer than the map, more of them show nothing more.
   int step_px = 1;
   VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
+  /// Of the same scan and pose, from its survey: with it, parts of the map are painted side by
+  /// side.
+  const ScanReach* reach = nullptr;
 };
 
 /// Fails: kInvalidArgument when a field is outside its range.
@@ -52,9 +57,10 @@ struct PaintConfig {
 /// source_index is the pixel (of all, not of those read) of the winning triangle's corner nearest
 /// to the cell's centre. Units/frames: heights are z of the work frame.  Cost: linear in pixels and
 /// cells painted. Memory: a few rows of scratch, given back.  Fails: kInvalidArgument, kNotFinite,
-/// kTooLarge, kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant.
+/// kTooLarge, kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant; parts of
+/// the map are shared out over `executor`.
 [[nodiscard]] Status paint(const RangeImageView& scan, const Pose& work_T_scan,
-                           const PaintConfig& config, Arena& scratch,
-                           const HeightMap& out) noexcept;
+                           const PaintConfig& config, Arena& scratch, const HeightMap& out,
+                           Executor& executor = callers_thread) noexcept;
 
 }  // namespace flatpose::rectify

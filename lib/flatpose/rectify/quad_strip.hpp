@@ -46,22 +46,21 @@ struct QuadStrip {
   std::int32_t source_down;   ///< From a to d.
 };
 
-/// The cells of a height map as the loops write them.
+/// The cells of a height map, or of a part of it, as the loops write them.
 struct MapCells {
-  float* height_mm;
+  float* height_mm;  ///< Of cell (0, 0) of the whole map.
   std::int32_t* source_index;
   std::int32_t height_stride_px;
   std::int32_t source_stride_px;
-  std::int32_t width_px;
-  std::int32_t height_px;
+  CellWindow window;  ///< Nothing outside is written.
 
-  explicit MapCells(const HeightMap& map) noexcept
+  MapCells(const HeightMap& map, const CellWindow& window_) noexcept
       : height_mm(map.height_mm.data),
         source_index(map.source_index.data),
         height_stride_px(static_cast<std::int32_t>(map.height_mm.stride_px)),
         source_stride_px(static_cast<std::int32_t>(map.source_index.stride_px)),
-        width_px(map.grid.width_px),
-        height_px(map.grid.height_px) {}
+        window(window_) {}
+  explicit MapCells(const HeightMap& map) noexcept : MapCells(map, whole(map.grid)) {}
 };
 
 /// Quads of a strip that are left to another loop, with the bits of their edges that hold.

@@ -74,10 +74,11 @@ Status check_arguments(const RangeImageView& scan, const Pose& work_T_scan,
   return Status::kOk;
 }
 
-void clear(const HeightMap& map) noexcept {
-  for (int y = 0; y < map.height_mm.height_px; ++y) {
-    std::fill_n(map.height_mm.row(y), map.height_mm.width_px, kMissing);
-    std::fill_n(map.source_index.row(y), map.source_index.width_px, kNoSource);
+void clear(const HeightMap& map, const CellWindow& window) noexcept {
+  const int count = window.column_end - window.column_begin;
+  for (int y = window.row_begin; y < window.row_end; ++y) {
+    std::fill_n(map.height_mm.row(y) + window.column_begin, count, kMissing);
+    std::fill_n(map.source_index.row(y) + window.column_begin, count, kNoSource);
   }
 }
 

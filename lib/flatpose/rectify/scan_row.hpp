@@ -69,7 +69,8 @@ struct ScanToGrid {
 [[nodiscard]] Status check_arguments(const RangeImageView& scan, const Pose& work_T_scan,
                                      const HeightMap& out) noexcept;
 
-/// Every cell missing.
-void clear(const HeightMap& map) noexcept;
+/// Every cell, or every one of a window, missing.
+void clear(const HeightMap& map, const CellWindow& window) noexcept;
+inline void clear(const HeightMap& map) noexcept { clear(map, whole(map.grid)); }
 
 }  // namespace flatpose::rectify

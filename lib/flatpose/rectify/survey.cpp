@@ -8,6 +8,7 @@
 
 #include "flatpose/rectify/row_kernels.hpp"
 #include "flatpose/rectify/scan_row.hpp"
+#include "flatpose/rectify/slots.hpp"
 
 namespace flatpose::rectify {
 namespace {
@@ -43,14 +44,29 @@ constexpr int kSampleSideMax = 2 * kSampleSide + 1;            // side / (side /
 constexpr double kLowerHalfMean_sigma = 0.32465;               // of a normal distribution
 constexpr double kSecondDifferenceSigmas = 2.449489742783178;  // sqrt(1 + 4 + 1)
 
+/// Values from the rows sampled, each row's in a place of its own: rows may be sampled in any
+/// order.
 class Sample {
  public:
   explicit Sample(Arena& arena) noexcept
-      : values_(arena.take<float>(kSampleSideMax * kSampleSideMax)) {}
+      : values_(arena.take<float>(kSampleSideMax * kSampleSideMax)),
+        counts_(arena.take<std::int32_t>(kSampleSideMax)) {
+    std::fill(counts_.begin(), counts_.end(), 0);
+  }
 
-  void add(double value) noexcept {
-    if (std::isfinite(value) && count_ < values_.size())
-      values_[count_++] = static_cast<float>(value);
+  void add(int row, double value) noexcept {
+    std::int32_t& count = counts_[static_cast<std::size_t>(row)];
+    if (std::isfinite(value) && count < kSampleSideMax)
+      values_[static_cast<std::size_t>(row * kSampleSideMax + count++)] = static_cast<float>(value);
+  }
+  /// One close to the other, when all are there.
+  void gather() noexcept {
+    for (int row = 0; row < kSampleSideMax; ++row) {
+      const float* from = values_.data() + row * kSampleSideMax;
+      const auto count = static_cast<std::size_t>(counts_[static_cast<std::size_t>(row)]);
+      std::copy_n(from, count, values_.data() + count_);
+      count_ += count;
+    }
   }
   /// 0 for none.
   [[nodiscard]] double median() noexcept {
@@ -77,6 +93,7 @@ class Sample {
 
  private:
   std::span<float> values_;
+  std::span<std::int32_t> counts_;  // by row
   std::size_t count_ = 0;
 };
 
@@ -84,6 +101,10 @@ struct Samples {
   Sample along_row, along_column, bend_along_row, bend_along_column;
   explicit Samples(Arena& arena) noexcept
       : along_row(arena), along_column(arena), bend_along_row(arena), bend_along_column(arena) {}
+  void gather() noexcept {
+    for (Sample* sample : {&along_row, &along_column, &bend_along_row, &bend_along_column})
+      sample->gather();
+  }
 };
 
 double distance_xy(const Vec3& a, const Vec3& b) noexcept {
@@ -92,14 +113,14 @@ double distance_xy(const Vec3& a, const Vec3& b) noexcept {
 
 /// The step from pixel p to the next along a direction, and the bend there.
 void sample_along(const RangeImageView& scan, const Pose& work_T_scan, int column, int row,
-                  int right, int down, Sample& step, Sample& bend) noexcept {
+                  int right, int down, int sampled_row, Sample& step, Sample& bend) noexcept {
   if (!scan.contains(column + right, row + down)) return;
   const Vec3 p = work_T_scan * scan(column, row);
   const Vec3 next = work_T_scan * scan(column + right, row + down);
-  step.add(distance_xy(p, next));
+  step.add(sampled_row, distance_xy(p, next));
   if (!scan.contains(column - right, row - down)) return;
   const Vec3 last = work_T_scan * scan(column - right, row - down);
-  bend.add(std::fabs(last.z - 2.0 * p.z + next.z));
+  bend.add(sampled_row, std::fabs(last.z - 2.0 * p.z + next.z));
 }
 
 /// Samples row r, if it is one of those that are.
@@ -109,10 +130,87 @@ void sample_row(const RangeImageView& scan, const Pose& work_T_scan, int r, Samp
   if (r < 0 || r % row_step != 0) return;
   // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
   for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
-    sample_along(scan, work_T_scan, c, r, 1, 0, out.along_row, out.bend_along_row);
-    sample_along(scan, work_T_scan, c, r, 0, 1, out.along_column, out.bend_along_column);
+    sample_along(scan, work_T_scan, c, r, 1, 0, r / row_step, out.along_row, out.bend_along_row);
+    sample_along(scan, work_T_scan, c, r, 0, 1, r / row_step, out.along_column,
+                 out.bend_along_column);
   }
 }
+
+void add(const Extent& part, Extent& extent) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    extent.min_mm[axis] = std::min(extent.min_mm[axis], part.min_mm[axis]);
+    extent.max_mm[axis] = std::max(extent.max_mm[axis], part.max_mm[axis]);
+  }
+  extent.valid_count += part.valid_count;
+  extent.has_wild |= part.has_wild;
+}
+
+ScanReach::Box box_of(const Extent& extent) noexcept {
+  return {extent.min_mm[0], extent.max_mm[0], extent.min_mm[1], extent.max_mm[1]};
+}
+
+// What the box's floats may be off by: some roundings of the terms of a coordinate.
+float rounding_mm(const Extent& extent, const Pose& work_T_scan) noexcept {
+  constexpr float kRoundings = 1e-5F;
+  float most_mm = 2.0F * static_cast<float>(norm(work_T_scan.position_mm));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    most_mm += std::max(std::fabs(extent.min_mm[axis]), std::fabs(extent.max_mm[axis]));
+  }
+  return kRoundings * most_mm;
+}
+
+/// The pass over all points, in chunks of whole groups of rows.
+class Surveyor {
+ public:
+  Surveyor(const RangeImageView& scan, const Pose& work_T_scan, VectorPath path, Samples& samples,
+           ScanReach& reach) noexcept
+      : scan_(scan),
+        work_T_scan_(work_T_scan),
+        affine_(affine_of(work_T_scan)),
+        kernels_(row_kernels(path)),
+        samples_(samples),
+        reach_(reach) {
+    reach_.scan_height_px = scan.height_px;
+  }
+
+  Extent run(Executor& executor) noexcept {
+    const RowChunks chunks(scan_.height_px, reach_.rows_per_group());
+    std::array<Extent, kChunkCountMax> extents;
+    auto body = [&](int chunk) {
+      extents[static_cast<std::size_t>(chunk)] = look(chunks.begin(chunk), chunks.end(chunk));
+    };
+    for_each_chunk(executor, chunks.count(), body);
+    Extent extent;
+    for (const Extent& part : extents) add(part, extent);
+    reach_.rounding_mm = rounding_mm(extent, work_T_scan_);
+    return extent;
+  }
+
+ private:
+  Extent look(int row_begin, int row_end) noexcept {
+    Extent extent;
+    const int group_rows = reach_.rows_per_group();
+    for (int begin = row_begin; begin < row_end; begin += group_rows) {
+      Extent group;
+      for (int r = begin; r < std::min(begin + group_rows, row_end); ++r) {
+        kernels_.add_extent(scan_, r, affine_, group);
+        // While it and its neighbours are at hand.
+        if (r > row_begin) sample_row(scan_, work_T_scan_, r - 1, samples_);
+      }
+      reach_.boxes[static_cast<std::size_t>(begin / group_rows)] = box_of(group);
+      add(group, extent);
+    }
+    sample_row(scan_, work_T_scan_, row_end - 1, samples_);
+    return extent;
+  }
+
+  const RangeImageView& scan_;
+  const Pose& work_T_scan_;
+  Affine affine_;
+  const RowKernels& kernels_;
+  Samples& samples_;
+  ScanReach& reach_;
+};
 
 bool is_within(double value, double low, double high) noexcept {
   return value >= low && value <= high;
@@ -127,7 +225,7 @@ std::size_t survey_required_bytes() noexcept {
 }
 
 Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratch,
-                      VectorPath path) noexcept {
+                      VectorPath path, Executor& executor) noexcept {
   if (const Status status = check_scan(scan, work_T_scan); status != Status::kOk) return status;
   const ArenaScope scope(scratch);
   Samples samples(scratch);
@@ -135,16 +233,10 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena
   Survey result;
   result.point_count = static_cast<int>(scan.size());
   if (result.point_count == 0) return result;
-  const Affine affine = affine_of(work_T_scan);
-  Extent extent;
-  const RowKernels& kernels = row_kernels(path);
-  for (int r = 0; r < scan.height_px; ++r) {
-    kernels.add_extent(scan, r, affine, extent);
-    sample_row(scan, work_T_scan, r - 1, samples);  // while it and its neighbours are at hand
-  }
-  sample_row(scan, work_T_scan, scan.height_px - 1, samples);
+  const Extent extent = Surveyor(scan, work_T_scan, path, samples, result.reach).run(executor);
   if (extent.has_wild) return Status::kNotFinite;
   write_extent(extent, result);
+  samples.gather();
   result.pitch_along_row_mm = samples.along_row.median();
   result.pitch_along_column_mm = samples.along_column.median();
   result.noise_sigma_mm = std::max(samples.bend_along_row.lower_half_mean(),

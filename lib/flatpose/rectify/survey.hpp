@@ -13,11 +13,13 @@
 #include <limits>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/executor.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
+#include "flatpose/rectify/scan_reach.hpp"
 
 namespace flatpose::rectify {
 
@@ -31,6 +33,7 @@ struct Survey {
                                        ///< median; 0 when no two neighbours are valid.
   double pitch_along_column_mm = 0.0;  ///< The same to the next row's.
   double noise_sigma_mm = 0.0;         ///< Of a point's z in the work frame; 0 when unknown.
+  ScanReach reach;                     ///< For painting.
 };
 
 /// Bytes of scratch that survey() takes, whatever the scan.
@@ -39,10 +42,11 @@ struct Survey {
 /// Surveys `scan` in the work frame. A scan of missing points alone is surveyed, not refused.
 /// Cost: one pass, and a bounded sample.  Memory: survey_required_bytes() of scratch, given back.
 /// Fails: kNotFinite (an infinite coordinate, or one beyond 1e6 mm; NaN is a missing point),
-/// kInvalidArgument, kTooLarge, kOutOfMemory.  Thread: reentrant.
+/// kInvalidArgument, kTooLarge, kOutOfMemory.  Thread: reentrant; rows are shared out over
+/// `executor`.
 [[nodiscard]] Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
-                                    Arena& scratch,
-                                    VectorPath path = VectorPath::kPortable) noexcept;
+                                    Arena& scratch, VectorPath path = VectorPath::kPortable,
+                                    Executor& executor = callers_thread) noexcept;
 
 /// A box in x and y of the work frame; without bounds as it stands.
 struct Region {

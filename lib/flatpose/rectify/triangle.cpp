@@ -7,7 +7,7 @@
 namespace flatpose::rectify {
 namespace {
 
-/// The cells whose centres lie in a box of places, clipped to the map; half-open.
+/// The cells whose centres lie in a box of places, clipped to a window; half-open.
 struct CellBox {
   std::int32_t column_begin, column_end, row_begin, row_end;
 
@@ -19,16 +19,16 @@ struct CellBox {
 // Places are odd and centres even: the first centre right of u is (u >> bits) + 1.
 /// Of three or four corners.
 template <class... Corners>
-inline CellBox box_of(const HeightMap& map, const Corner& first,
+inline CellBox box_of(const CellWindow& window, const Corner& first,
                       const Corners&... others) noexcept {
   std::int32_t u_min = first.u, u_max = first.u, v_min = first.v, v_max = first.v;
   ((u_min = std::min(u_min, others.u), u_max = std::max(u_max, others.u),
     v_min = std::min(v_min, others.v), v_max = std::max(v_max, others.v)),
    ...);
-  return {std::max((u_min >> kUnitBits) + 1, 0),
-          std::min((u_max >> kUnitBits) + 1, map.height_mm.width_px),
-          std::max((v_min >> kUnitBits) + 1, 0),
-          std::min((v_max >> kUnitBits) + 1, map.height_mm.height_px)};
+  return {std::max((u_min >> kUnitBits) + 1, window.column_begin),
+          std::min((u_max >> kUnitBits) + 1, window.column_end),
+          std::max((v_min >> kUnitBits) + 1, window.row_begin),
+          std::min((v_max >> kUnitBits) + 1, window.row_end)};
 }
 
 /// A corner as seen from a cell's centre.
@@ -71,9 +71,9 @@ std::int32_t nearest_source(const Seen& a, const Seen& b, const Seen& c) noexcep
 
 }  // namespace
 
-void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
-                    const Corner& c) noexcept {
-  const CellBox box = box_of(map, a, b, c);
+void paint_triangle(const HeightMap& map, const CellWindow& window, const Corner& a,
+                    const Corner& b, const Corner& c) noexcept {
+  const CellBox box = box_of(window, a, b, c);
   if (box.empty()) return;
   const Seen a0(a, box.column_begin, box.row_begin);
   const Seen b0(b, box.column_begin, box.row_begin);
@@ -101,9 +101,9 @@ void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
   }
 }
 
-void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
-                const Corner& d) noexcept {
-  const CellBox box = box_of(map, a, b, c, d);
+void paint_quad(const HeightMap& map, const CellWindow& window, const Corner& a, const Corner& b,
+                const Corner& c, const Corner& d) noexcept {
+  const CellBox box = box_of(window, a, b, c, d);
   for (int row = box.row_begin; row < box.row_end; ++row) {
     for (int column = box.column_begin; column < box.column_end; ++column) {
       const Seen a0(a, column, row), b0(b, column, row), c0(c, column, row), d0(d, column, row);

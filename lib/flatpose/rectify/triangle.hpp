@@ -25,13 +25,21 @@ inline void put(const HeightMap& map, int column, int row, float z_mm,
   map.source_index.row(row)[column] = source_index;
 }
 
-/// Paints the triangle a, b, c of either winding; none of no area.
+/// Paints the triangle a, b, c of either winding into a window of the map; none of no area.
 /// Cost: the cells of its box.  Thread: one painter a map.
-void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
-                    const Corner& c) noexcept;
+void paint_triangle(const HeightMap& map, const CellWindow& window, const Corner& a,
+                    const Corner& b, const Corner& c) noexcept;
+inline void paint_triangle(const HeightMap& map, const Corner& a, const Corner& b,
+                           const Corner& c) noexcept {
+  paint_triangle(map, whole(map.grid), a, b, c);
+}
 
 /// Paints the triangles a, b, c and a, c, d as paint_triangle() would one after the other.
-void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
-                const Corner& d) noexcept;
+void paint_quad(const HeightMap& map, const CellWindow& window, const Corner& a, const Corner& b,
+                const Corner& c, const Corner& d) noexcept;
+inline void paint_quad(const HeightMap& map, const Corner& a, const Corner& b, const Corner& c,
+                       const Corner& d) noexcept {
+  paint_quad(map, whole(map.grid), a, b, c, d);
+}
 
 }  // namespace flatpose::rectify

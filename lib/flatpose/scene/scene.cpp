@@ -38,6 +38,7 @@ rectify::RectifyConfig rectify_config(const SceneConfig& config, double cell_mm)
   rectified.paint.jump_mm = edge_threshold_mm(config);
   rectified.paint.max_gap_mm = kPitchesPerGap * rectified.paint.step_px * config.pitch_mm;
   rectified.paint.vector_path = config.vector_path;
+  rectified.paint.reach = config.reach;
   return rectified;
 }
 
@@ -67,15 +68,17 @@ Scene take_scene(Arena& arena, const rectify::Grid& grid,
 }
 
 Status build_scene(const RangeImageView& scan, const Frames& frames, const rectify::Grid& grid,
-                   const SceneConfig& config, Arena& arena, Scene& scene) noexcept {
+                   const SceneConfig& config, Arena& arena, Scene& scene,
+                   Executor& executor) noexcept {
   std::span<image::EdgePoint> edge_memory;
   scene = take_scene(arena, grid, edge_memory);
   if (arena.failed()) return Status::kOutOfMemory;
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
   scene.vector_path = config.vector_path;
-  if (const Status s = rectify::rectify(scan, frames.work_T_scan,
-                                        rectify_config(config, grid.cell_mm), arena, scene.map);
+  if (const Status s =
+          rectify::rectify(scan, frames.work_T_scan, rectify_config(config, grid.cell_mm), arena,
+                           scene.map, executor);
       s != Status::kOk) {
     return s;
   }
@@ -89,7 +92,7 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
   }
   const Result<int> edge_count =
       image::detect_edges(scene.filled_mm, scene.missing, grid.cell_mm, edge_config(config), arena,
-                          scene.edge_kind, edge_memory, config.vector_path);
+                          scene.edge_kind, edge_memory, config.vector_path, executor);
   if (!edge_count) return edge_count.status();
   scene.edges = edge_memory.first(static_cast<std::size_t>(*edge_count));
   return Status::kOk;

@@ -24,6 +24,7 @@ struct SceneConfig {
   double step_mm = 0.0;   ///< Steps that matter, when known (0: all that stand out of the noise).
   rectify::Method method = rectify::Method::kPaint;
   VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
+  const rectify::ScanReach* reach = nullptr;       ///< From the scan's survey: see PaintConfig.
 };
 
 struct Scene {
@@ -47,9 +48,9 @@ struct Scene {
 /// Rectifies, fills and finds the edges.
 /// Memory: `arena` keeps what take_scene takes; scratch on top of it is given back.
 /// Fails: as rectify and detect_edges; kTooLarge when the scan has more edge cells than a quarter
-/// of its cells.
+/// of its cells.  Thread: reentrant; shared out over `executor`.
 [[nodiscard]] Status build_scene(const RangeImageView& scan, const Frames& frames,
                                  const rectify::Grid& grid, const SceneConfig& config, Arena& arena,
-                                 Scene& scene) noexcept;
+                                 Scene& scene, Executor& executor = callers_thread) noexcept;
 
 }  // namespace flatpose::scene
