@@ -124,9 +124,15 @@ inline Pairs gather_pairs(const float* base, Ints index) noexcept {
   return every_second(half(_mm256_castsi256_si128(at)), half(_mm256_extracti128_si256(at, 1)),
                       std::make_integer_sequence<int, kLanes>{});
 #else
-  const Ints at = kStep * index;
-  return {Floats{base[at[0]], base[at[1]], base[at[2]], base[at[3]]},
-          Floats{base[at[0] + 1], base[at[1] + 1], base[at[2] + 1], base[at[3] + 1]}};
+  using Two = float __attribute__((vector_size(8)));
+  const auto two = [base, at = kStep * index](int k) {
+    Two pair;
+    std::memcpy(&pair, base + at[k], sizeof pair);
+    return pair;
+  };
+  return every_second(__builtin_shufflevector(two(0), two(1), 0, 1, 2, 3),
+                      __builtin_shufflevector(two(2), two(3), 0, 1, 2, 3),
+                      std::make_integer_sequence<int, kLanes>{});
 #endif
 }
 /// The bytes base[index] of an image of `size` bytes, at least 4.
