@@ -7,14 +7,9 @@ namespace flatpose::search {
 void search_block_portable(const BlockJob& job) noexcept;
 void search_block_avx2(const BlockJob& job) noexcept;
 void search_block_avx512(const BlockJob& job) noexcept;
-
-namespace {
-
-std::int16_t bounded_rise(std::int32_t rise_unit) noexcept {
-  return static_cast<std::int16_t>(std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax));
-}
-
-}  // namespace
+void bound_nodes_portable(const NodeJob& job) noexcept;
+void bound_nodes_avx2(const NodeJob& job) noexcept;
+void bound_nodes_avx512(const NodeJob& job) noexcept;
 
 OffsetTable::OffsetTable(const Lattice& lattice) noexcept {
   for (int d = -lattice.reach_px(); d <= lattice.reach_px(); ++d) {
@@ -36,6 +31,11 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
   out.contour_count = projected.contour_count;
   out.surface_count = projected.surface_count;
   out.edge_factor_q8 = projected.edge_factor_q8;
+  RiseRange rises{kHeightUnitMax, -kHeightUnitMax};
+  const auto include = [&rises](std::int32_t rise_unit) {
+    rises.low_unit = std::min(rises.low_unit, rise_unit);
+    rises.high_unit = std::max(rises.high_unit, rise_unit);
+  };
   for (int i = 0; i < projected.contour_count; ++i) {
     const ProjectedTemplate::Contour& from = projected.contour[i];
     const std::int32_t shift = offsets.offset_bytes(from.dx, from.dy);
@@ -43,6 +43,7 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     out.contour[i].offset_bytes = octant * image_bytes + shift;
     out.contour[i].second_offset_bytes = surface_image + shift;
     out.contour[i].rise_unit = bounded_rise(from.rise_unit);
+    include(out.contour[i].rise_unit);
   }
   for (int i = 0; i < projected.surface_count; ++i) {
     const ProjectedTemplate::Surface& from = projected.surface[i];
@@ -51,28 +52,30 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     out.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
     if (images.config.use_height) {
       out.surface[i].rise_unit = bounded_rise(from.rise_unit);
+      include(out.surface[i].rise_unit);
     } else {
       out.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
       out.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);
     }
   }
+  out.rises = rises;
 }
 
 RiseRange rise_range(std::span<const ShiftedTemplate> angles) noexcept {
   RiseRange range{kHeightUnitMax, -kHeightUnitMax};
-  const auto include = [&range](const ShiftedPoint& p) {
-    range.low_unit = std::min<std::int32_t>(range.low_unit, p.rise_unit);
-    range.high_unit = std::max<std::int32_t>(range.high_unit, p.rise_unit);
-  };
   for (const ShiftedTemplate& t : angles) {
-    for (int i = 0; i < t.contour_count; ++i) include(t.contour[i]);
-    for (int i = 0; i < t.surface_count; ++i) include(t.surface[i]);
+    range.low_unit = std::min(range.low_unit, t.rises.low_unit);
+    range.high_unit = std::max(range.high_unit, t.rises.high_unit);
   }
   return range.low_unit <= range.high_unit ? range : RiseRange{};
 }
 
 SearchBlock search_block_for(VectorPath path) noexcept {
   return FLATPOSE_FORM_FOR(path, search_block_portable, search_block_avx2, search_block_avx512);
+}
+
+BoundNodes bound_nodes_for(VectorPath path) noexcept {
+  return FLATPOSE_FORM_FOR(path, bound_nodes_portable, bound_nodes_avx2, bound_nodes_avx512);
 }
 
 }  // namespace flatpose::search

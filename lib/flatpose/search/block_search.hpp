@@ -4,6 +4,7 @@
 // (score.hpp says of what). The loop is written once and compiled once for every vector width; each
 // form equals the scalar cost in every bit.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,7 @@ namespace flatpose::search {
 // nearly symmetric does not lose its true angle to a neighbour's false one.
 inline constexpr int kSectorCount = 4;
 inline constexpr std::uint8_t kNoAngle = 255;
+inline constexpr int kAngleCountMax = 720;
 
 /// A template point as the loop takes it.
 struct ShiftedPoint {
@@ -27,6 +29,11 @@ struct ShiftedPoint {
   std::uint8_t low = 0;                  ///< Normals: the expected x and y.
   std::uint8_t high = 0;
 };
+
+/// Farther apart than this heights are alike, clamped as they are.
+[[nodiscard]] constexpr std::int16_t bounded_rise(std::int32_t rise_unit) noexcept {
+  return static_cast<std::int16_t>(std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax));
+}
 
 /// All rises of some templates' points lie in it.
 struct RiseRange {
@@ -38,6 +45,7 @@ struct ShiftedTemplate {
   std::int32_t contour_count = 0;
   std::int32_t surface_count = 0;
   std::int32_t edge_factor_q8 = 256;
+  RiseRange rises;  ///< Of its points; of none the highest below the lowest.
   std::array<ShiftedPoint, kContourCountMax> contour;
   std::array<ShiftedPoint, kSurfaceCountMax> surface;
 };
@@ -63,6 +71,12 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
 [[nodiscard]] ShiftedTemplate shifted(const ProjectedTemplate& projected,
                                       const SearchImages& images) noexcept;
 
+/// What all angles of a group can do at best, as a node (node_images.hpp) is held against it.
+struct GroupTemplate {
+  std::int32_t contour_count = 0;
+  std::array<ShiftedPoint, kContourCountMax> contour;
+};
+
 /// Of all points of all angles; of none the widest.
 [[nodiscard]] RiseRange rise_range(std::span<const ShiftedTemplate> angles) noexcept;
 
@@ -72,13 +86,16 @@ struct BlockJob {
   const std::uint16_t* bin = nullptr;         ///< Of the block's places.
   std::uint16_t wanted_bin = 0;               ///< Only its places are written to.
   std::span<const ShiftedTemplate> angles;    ///< At most kSectorCount x kNoAngle.
-  RiseRange rises;                            ///< Of `angles`, or wider; wide ones cost time.
+  /// Which of them to look at, in order, if not at all; the others have no cost below the cut-off.
+  const std::uint16_t* listed = nullptr;
+  int listed_count = 0;
+  RiseRange rises;  ///< Of `angles`, or wider; wide ones cost time.
   bool use_height = true;
   std::uint8_t surface_cap = 0;
   std::uint8_t surface_weight = 1;
   std::uint8_t cutoff = 0;  ///< Only costs below it count.
   /// By sector: the lowest cost of every place, and the angle within the sector, kNoAngle for none.
-  /// Of equal costs the first angle's. Of a sector without angles nothing is written.
+  /// Of equal costs the first angle's. Of a sector without angles to look at nothing is written.
   std::array<std::uint8_t*, kSectorCount> best_cost{};
   std::array<std::uint8_t*, kSectorCount> best_angle{};
 };
@@ -89,6 +106,26 @@ struct BlockJob {
 }
 
 using SearchBlock = void (*)(const BlockJob&) noexcept;
+
+/// A block of nodes against groups of angles at one tilt.
+struct NodeJob {
+  const std::uint8_t* image_bytes = nullptr;  ///< Of the block's first node, first node image.
+  const std::uint8_t* node_unit = nullptr;    ///< The lowest of its places; kOutsideUnit: none.
+  std::span<const GroupTemplate> groups;
+  RiseRange rises;
+  bool use_height = true;
+  std::uint8_t surface_cap = 0;
+  std::uint8_t edge_limit = 0;     ///< Edge sums from here on are at the cut-off.
+  std::uint64_t* alive = nullptr;  ///< By group: bit i for node i.
+};
+
+/// Tells which nodes may hold a hypothesis below the cut-off. Bound: a place's contour point costs
+/// d, or min(d, kEdgeCostUnknown) where the height is above place + rise + cap. Both d and
+/// min(d, unknown) rise with d, and the cost falls as the height rises or place or rise falls: with
+/// the least d, place and rise and the greatest height, each over a set that holds the place's own,
+/// it is no higher. Surface points cost nothing or more.
+using BoundNodes = void (*)(const NodeJob&) noexcept;
+[[nodiscard]] BoundNodes bound_nodes_for(VectorPath path) noexcept;
 
 /// The form for a path; the portable one where this build has no such.
 [[nodiscard]] SearchBlock search_block_for(VectorPath path) noexcept;

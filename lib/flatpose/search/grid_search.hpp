@@ -9,14 +9,13 @@
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/search/block_search.hpp"
+#include "flatpose/search/candidate.hpp"
 #include "flatpose/search/places.hpp"
 #include "flatpose/search/score.hpp"
 #include "flatpose/search/search_images.hpp"
 #include "flatpose/search/tilt_field.hpp"
 
 namespace flatpose::search {
-
-inline constexpr int kAngleCountMax = 720;
 
 struct GridSearchConfig {
   ScoreConfig score;
@@ -26,20 +25,11 @@ struct GridSearchConfig {
   VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
 };
 
-/// One hypothesis worth a closer look.
-struct Candidate {
-  std::int32_t cost_q10 = 0;  ///< Cost as a share of the worst at its own tilt, times 1024. The
-                              ///< list is in order of the plain cost.
-  std::int32_t angle_index = 0;
-  std::int16_t column = 0;  ///< Of the cell.
-  std::int16_t row = 0;
-  std::int16_t anchor = 0;
-  Pose work_T_object;
-};
-
 struct GridSearchResult {
   int candidate_count = 0;            ///< Filled in `candidates`, best first.
   std::int64_t hypothesis_count = 0;  ///< Left by the planarity gate.
+  /// Of these, the ones that were looked at one by one: for the others a bound was enough.
+  std::int64_t evaluated_count = 0;
 };
 
 /// Takes (and leaves taken) the scratch of every stage of the search on a map of half of `fine`'s

@@ -15,7 +15,10 @@ namespace {
 
 bool is_valid(const SearchImagesConfig& config) noexcept {
   return config.stride_px >= 1 && config.stride_px <= kStrideMax_px &&
-         config.height_tolerance_mm > 0.0 && config.normal_tolerance_rad > 0.0;
+         config.height_tolerance_mm > 0.0 && config.normal_tolerance_rad > 0.0 &&
+         (config.node_side == 0 || config.node_side == 2 || config.node_side == 4) &&
+         config.node_slack >= 0 && config.node_slack <= kNodeSlackMax &&
+         (config.node_slack == 0 || config.stride_px == 1);
 }
 
 std::size_t image_bytes_max(int width_px, int height_px) noexcept {
@@ -198,7 +201,7 @@ std::uint8_t height_unit(double height_mm, const SearchImages& images) noexcept 
   return static_cast<std::uint8_t>(std::clamp(value, 0.0, 1.0 * kHeightUnitMax));
 }
 
-SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcept {
+SearchImages take_search_images(Arena& arena, const rectify::Grid& fine, bool with_nodes) noexcept {
   SearchImages images;
   images.grid = image::halved(fine);
   const int width_px = images.grid.width_px;
@@ -206,6 +209,7 @@ SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcep
   images.filled_mm = arena.take_image<float>(width_px, height_px);
   images.bytes =
       arena.take<std::uint8_t>(SearchImages::kImageCountMax * image_bytes_max(width_px, height_px));
+  if (with_nodes) images.nodes = take_node_images(arena, width_px, height_px);
   return images;
 }
 
@@ -241,13 +245,17 @@ Status build_search_images(const scene::Scene& scene, const SearchImagesConfig& 
                            const HeightRange& range, Arena& scratch,
                            SearchImages& images) noexcept {
   if (!is_valid(config)) return Status::kInvalidArgument;
+  if (config.node_side > 0 && images.nodes.bytes.empty()) return Status::kInvalidArgument;
   images.config = config;
   images.lattice =
       make_lattice(images.grid.width_px, images.grid.height_px, config.stride_px, config.reach_px);
   choose_units(range, images);
   const Status s =
       config.use_height ? spread_heights(images, scratch) : spread_normals(images, scratch);
-  return s == Status::kOk ? spread_edge_costs(scene, scratch, images) : s;
+  if (s != Status::kOk) return s;
+  if (const Status e = spread_edge_costs(scene, scratch, images); e != Status::kOk) return e;
+  build_node_images(images);
+  return Status::kOk;
 }
 
 }  // namespace flatpose::search

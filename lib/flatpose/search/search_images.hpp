@@ -12,6 +12,7 @@
 #include "flatpose/rectify/height_map.hpp"
 #include "flatpose/scene/scene.hpp"
 #include "flatpose/search/lattice.hpp"
+#include "flatpose/search/node_images.hpp"
 
 namespace flatpose::search {
 
@@ -30,6 +31,9 @@ struct SearchImagesConfig {
   double normal_tolerance_rad = 0.35;  ///< Where the normal cost reaches its maximum; > 0.
   bool use_height = true;              ///< Off: normals instead, as the thesis has it.
   bool use_directions = true;          ///< Off: any edge serves, whichever way it falls.
+  int node_side = 0;                   ///< Places across a node of branch and bound: 2, 4; 0: none.
+  int node_slack = 0;  ///< Places by which offsets of a node's angles may differ; more than 0 pays
+                       ///< where neighbouring angles move no point by a place. Stride 1 only.
 };
 
 struct HeightRange {
@@ -46,7 +50,8 @@ struct SearchImages {
   SearchImagesConfig config;
   Lattice lattice;
   std::span<std::uint8_t> bytes;  ///< The images one after the other, each in its phases.
-  double base_mm = 0.0;           ///< Height of unit 0.
+  NodeImages nodes;
+  double base_mm = 0.0;  ///< Height of unit 0.
   double height_unit_mm = 1.0;
   std::int32_t surface_cap = kSurfaceCostMax;  ///< Units at which the surface cost saturates.
   std::int32_t surface_weight = 1;             ///< Cost of one unit.
@@ -76,8 +81,10 @@ struct SearchImages {
 /// A height as the images hold it.
 [[nodiscard]] std::uint8_t height_unit(double height_mm, const SearchImages& images) noexcept;
 
-/// Takes the memory of the coarse level, of half the resolution of `fine`, for any config.
-[[nodiscard]] SearchImages take_search_images(Arena& arena, const rectify::Grid& fine) noexcept;
+/// Takes the memory of the coarse level, of half the resolution of `fine`, for any config; one with
+/// nodes asks for as much again.
+[[nodiscard]] SearchImages take_search_images(Arena& arena, const rectify::Grid& fine,
+                                              bool with_nodes = false) noexcept;
 
 /// Takes (and leaves taken) the scratch of the two calls below on the coarse level, also from a
 /// measuring arena.
@@ -90,7 +97,8 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 
 /// Fills the bytes. `range` is where places lie: heights beyond it by more than the tolerance are
 /// told apart no further.
-/// Fails: kOutOfMemory (scratch), kInvalidArgument (config; edges that do not go by rows).
+/// Fails: kOutOfMemory (scratch), kInvalidArgument (config; nodes
+/// without memory; edges that do not go by rows).
 [[nodiscard]] Status build_search_images(const scene::Scene& scene,
                                          const SearchImagesConfig& config, const HeightRange& range,
                                          Arena& scratch, SearchImages& images) noexcept;

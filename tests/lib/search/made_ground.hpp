@@ -93,6 +93,8 @@ void over_random_grounds(unsigned seed, double slope_max, int levels, const Chec
     SearchImagesConfig images{1 + trial % kStrideMax_px, integer(random, 3, 20)};
     images.use_height = trial / 4 % 4 != 3;
     images.use_directions = trial / 4 % 4 != 2;
+    images.node_side = std::array{0, 2, 4}[trial % 3];
+    images.node_slack = images.node_side > 0 && images.stride_px == 1 ? trial / 4 % 3 : 0;
     MadeGround ground(integer(random, 1, 24 * images.stride_px),
                       integer(random, 1, 12 * images.stride_px), images);
     ground.made.randomise(random, levels);

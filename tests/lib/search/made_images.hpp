@@ -22,6 +22,7 @@ struct MadeImages {
   Cells normal_x;
   Cells normal_y;
   std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> nodes;
 
   MadeImages(int width_px, int height_px, const SearchImagesConfig& config)
       : edge(image::kOctantCount, Cells(width_px, height_px, kEdgeCostMax)),
@@ -35,6 +36,14 @@ struct MadeImages {
     images.base_mm = -100.0 * images.height_unit_mm;
     bytes.resize(SearchImages::kImageCountMax * images.lattice.image_bytes());
     images.bytes = bytes;
+    const auto node_bytes = [&] {
+      return NodeImages::kImageCount * make_lattice(width_px, height_px,
+                                                    config.stride_px * config.node_side,
+                                                    images.lattice.reach_px())
+                                           .image_bytes();
+    };
+    if (config.node_side > 0) nodes.resize(node_bytes());
+    images.nodes.bytes = nodes;
     spread_all();
   }
   MadeImages(const MadeImages&) = delete;
@@ -57,6 +66,7 @@ struct MadeImages {
     spread_one(images.config.use_height ? height : normal_x, kOutsideUnit,
                SearchImages::kSurfaceImage);
     spread_one(normal_y, kOutsideUnit, SearchImages::kSurfaceImage + 1);
+    build_node_images(images);
   }
 
   template <class Function>
