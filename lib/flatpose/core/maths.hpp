@@ -30,6 +30,15 @@ struct SinCos {
   return arc_tangent(std::sqrt((1.0 - c) * (1.0 + c)), c);
 }
 
+/// The nearest whole number, halves up; a billion beyond +-a billion.  Cost: no call, unlike
+/// std::floor() where the processor is only promised to have SSE2.
+[[nodiscard]] inline int rounded(double value) noexcept {
+  const double half_up = value + 0.5;
+  const double held = half_up > 1e9 ? 1e9 : (half_up > -1e9 ? half_up : -1e9);
+  const int towards_zero = static_cast<int>(held);
+  return towards_zero - (held < towards_zero ? 1 : 0);
+}
+
 /// The same angle in [-pi, pi).
 [[nodiscard]] inline double wrap_angle(double angle_rad) noexcept {
   return angle_rad - 2.0 * kPi * std::floor((angle_rad + kPi) / (2.0 * kPi));

@@ -149,8 +149,10 @@ class Pipeline {
   }
 
   Status search(int anchor) noexcept {
-    const std::size_t wanted =
-        static_cast<std::size_t>(std::min(kCandidateCountMax, 42 + 6 * config_.max_matches));
+    // A further anchor is for parts whose first one is covered; in the open they are found.
+    const int spare = anchor == 0 ? 42 : 18;
+    const auto wanted =
+        static_cast<std::size_t>(std::min(kCandidateCountMax, spare + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
         search::grid_search(work_.coarse, work_.tilt, work_.places, part_, anchor, settings_.search,
                             arena_, work_.candidates.first(wanted));

@@ -15,14 +15,15 @@ refine::LevenbergMarquardtConfig solver_config(int iteration_limit) noexcept {
 }  // namespace
 
 Refined Refinement::operator()(const Pose& start) const noexcept {
-  const double hopeless = kHopelessShare * settings_.score_threshold;
   Refined out;
-  if (verifier_.verify(images_, {}, start, settings_.screen).score < hopeless) return out;
+  if (verifier_.verify(images_, {}, start, settings_.screen).score < settings_.screen.least_score)
+    return out;
   out.is_moved = true;
   const refine::PoseProblem wide(part_, images_, settings_.wide);
   const Pose near = refine::minimize<6>(wide, start, solver_config(10)).x;
   out.work_T_object = near;
-  if (verifier_.verify(images_, {}, near, settings_.near).score < hopeless) return out;
+  if (verifier_.verify(images_, {}, near, settings_.near).score < settings_.near.least_score)
+    return out;
   const refine::PoseProblem narrow(part_, images_, settings_.narrow);
   out.work_T_object = refine::minimize<6>(narrow, near, solver_config(15)).x;
   out.verification = verifier_.verify(images_, {}, out.work_T_object, settings_.verify);

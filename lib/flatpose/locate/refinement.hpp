@@ -8,9 +8,6 @@
 
 namespace flatpose::locate {
 
-/// What is this far below the threshold does not rise above it any more.
-inline constexpr double kHopelessShare = 0.6;
-
 struct Refined {
   bool is_moved = false;  ///< Whether the candidate was worth a refinement.
   bool is_found = false;  ///< Whether that came to a pose worth keeping.

@@ -119,11 +119,12 @@ Settings derive_settings(const model::Template& part, const LocateConfig& config
   s.screen.contour_count = 96;
   s.screen.surface_count = 64;
   s.screen.edge_tolerance_px = search::kEdgeCostMax / 3.0;
+  s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
+  s.screen.least_score = kHopelessShare * s.score_threshold;
   s.near = s.screen;
   s.near.surface_tolerance_mm = surface_tolerance_mm;
   s.near.height_tolerance_mm = height_tolerance_mm;
   s.near.edge_tolerance_px = s.verify.edge_tolerance_px;
-  s.score_threshold = config.min_score >= 0.0 ? config.min_score : part.score_threshold;
   return s;
 }
 

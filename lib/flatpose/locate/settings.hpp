@@ -11,6 +11,9 @@
 
 namespace flatpose::locate {
 
+/// What is this far below the threshold does not rise above it any more.
+inline constexpr double kHopelessShare = 0.6;
+
 struct Settings {
   scene::SceneConfig scene;
   search::PlaceConfig places;

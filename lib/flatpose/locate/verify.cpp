@@ -128,7 +128,10 @@ SurfaceVerdict judge_surface(const model::Template& part, const refine::FineImag
 }  // namespace
 
 Verifier::Verifier(const model::Template& part) noexcept
-    : part_(part), weight_(part), typical_spread_mm_(typical_spread_mm(part)), hold_(part) {}
+    : part_(part), weight_(part), typical_spread_mm_(typical_spread_mm(part)), hold_(part) {
+  for (int i = 0; i < part.contour_count; ++i)
+    weight_before_[i + 1] = weight_before_[i] + weight_(part.contour[i]);
+}
 
 Verification Verifier::verify(const refine::FineImages& images,
                               ImageView<const std::uint8_t> claimed, const Pose& work_T_object,
@@ -151,12 +154,19 @@ Verification Verifier::verify(const refine::FineImages& images,
   Verification out;
   out.surface = surface.evidence;
   out.visible = surface.visible_share;
+  const double surface_score =
+      surface_agreement(surface.confirmed_share, config.contradiction_weight);
+  if (surface_score < config.least_score) return out;
   double visible_weight = 0.0;
   double confirmed_weight = 0.0;
   LandmarkTally landmarks(part_.landmarks);
   Hold hold = config.use_landmarks ? hold_ : Hold();
   const int contour_count = std::min(part_.contour_count, config.contour_count);
   for (int i = 0; i < contour_count; ++i) {
+    // At best all that is left is seen and confirmed.
+    const double left = weight_before_[contour_count] - weight_before_[i];
+    if (surface_score * share(confirmed_weight + left, visible_weight + left) < config.least_score)
+      return out;
     const model::ContourPoint& p = part_.contour[i];
     const PointVerdict verdict = judge(p);
     if (!verdict.seen) continue;
@@ -172,8 +182,7 @@ Verification Verifier::verify(const refine::FineImages& images,
     const PointVerdict verdict = judge(part_.landmarks.mirrored[i]);
     if (verdict.seen) landmarks.add_mirrored(i, verdict);
   }
-  out.score = surface_agreement(surface.confirmed_share, config.contradiction_weight) *
-              share(confirmed_weight, visible_weight) * landmarks.agreement();
+  out.score = surface_score * share(confirmed_weight, visible_weight) * landmarks.agreement();
   out.held = hold.least_share();
   out.shows_face = landmarks.shows_face(part_.contour_count);
   return out;

@@ -3,6 +3,7 @@
 // lies outside the field, on missing data or under something higher says nothing; one that could be
 // seen either confirms or contradicts.
 
+#include <array>
 #include <cstdint>
 
 #include "flatpose/core/image_view.hpp"
@@ -22,6 +23,8 @@ struct VerifyConfig {
       1.5;  ///< A contour point this near to an edge that falls its way is confirmed.
   /// Holes that can be seen must be there, and the face and the hold of the contour are judged.
   bool use_landmarks = true;
+  /// A score that cannot reach this is not worked out: any value below it stands for it.
+  double least_score = 0.0;
   /// How much more than a confirmed one a contradicted point of the surface weighs; >= 1.
   double contradiction_weight = 3.0;
 };
@@ -59,7 +62,9 @@ class Verifier {
   const model::Template& part_;
   DirectionWeight weight_;
   double typical_spread_mm_;
-  Hold hold_;  ///< With nothing confirmed yet.
+  std::array<double, model::kContourPointCountMax + 1>
+      weight_before_{};  ///< Of all points before one.
+  Hold hold_;            ///< With nothing confirmed yet.
 };
 
 /// Marks the cells under the part's visible surface as explained.

@@ -2,6 +2,7 @@
 // The way from a place in the height map back to the scan's own points, which the last step is
 // fitted to.
 
+#include "flatpose/core/maths.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/rectify/height_map.hpp"
@@ -21,8 +22,8 @@ struct RawScan {
 
   /// The pixel that fed the cell under a point of the work frame, or none.
   [[nodiscard]] Pixel pixel_under(const Vec3& p_work_mm) const noexcept {
-    const int column = static_cast<int>(std::floor(map->grid.column_of(p_work_mm.x) + 0.5));
-    const int row = static_cast<int>(std::floor(map->grid.row_of(p_work_mm.y) + 0.5));
+    const int column = rounded(map->grid.column_of(p_work_mm.x));
+    const int row = rounded(map->grid.row_of(p_work_mm.y));
     if (!map->source_index.contains(column, row)) return {};
     const std::int32_t source = map->source_index(column, row);
     if (source == rectify::kNoSource) return {};
