@@ -342,8 +342,8 @@ class Pipeline {
       return false;
     }
     const refine::RawScan raw{scan_, frames_.work_T_scan, &scene_.map};
-    const Result<refine::PolishResult> polished =
-        refine::polish(part_, raw, instance.work_T_object, settings_.polish, work_.polish[0]);
+    const Result<refine::PolishResult> polished = refine::polish(
+        part_, raw, instance.work_T_object, settings_.polish, work_.polish, host_.executor);
     instance.is_open = polished.status() == Status::kOk;
     if (!instance.is_open) return false;
     instance.polished = *polished;

@@ -20,7 +20,7 @@ Workspace take_workspace(Arena& arena, const rectify::Grid& grid) noexcept {
   work.candidates = arena.take<search::Candidate>(kCandidateCountMax);
   work.instances = Instances(arena.take<Instance>(kInstanceCountMax));
   work.starts = arena.take<Pose>(kStartCountMax);
-  for (refine::PolishScratch& scratch : work.polish) scratch = refine::take_polish_scratch(arena);
+  work.polish = refine::take_polish_scratch(arena);
   return work;
 }
 

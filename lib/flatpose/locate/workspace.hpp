@@ -1,7 +1,6 @@
 #pragma once
 // All memory of one search, laid out in one place, so that measuring and taking it cannot disagree.
 
-#include <array>
 #include <span>
 
 #include "flatpose/core/arena.hpp"
@@ -20,7 +19,6 @@ namespace flatpose::locate {
 inline constexpr int kCandidateCountMax = 192;  ///< Of one anchor.
 inline constexpr int kInstanceCountMax = 2 * kCandidateCountMax;
 inline constexpr int kStartCountMax = 4 * kCandidateCountMax;
-inline constexpr int kPolishCountMax = 4;  ///< At a time.
 
 struct Workspace {
   refine::FineImages fine;
@@ -31,7 +29,7 @@ struct Workspace {
   std::span<search::Candidate> candidates;
   Instances instances;
   std::span<Pose> starts;  ///< Of refinements.
-  std::array<refine::PolishScratch, kPolishCountMax> polish;
+  refine::PolishScratch polish;
 };
 
 /// Takes everything but the scene, which build_scene takes itself.

@@ -13,7 +13,8 @@ constexpr int kPointCountMin = 12;
 constexpr int kCrossingCountMin = 6;
 constexpr double kSigmaMin = 0.02;  // of the pitch: quantised scans may fit exactly
 // Rounds before the last need no more of the contour and the surface than this to come home.
-constexpr int kCrossingsToComeHome = 96;
+constexpr int kContourToComeHome = 160;
+constexpr int kCrossingsToComeHome = 60;
 constexpr int kPointsToComeHome = 500;
 
 struct Sigmas {
@@ -131,20 +132,55 @@ class PolishProblem {
   const PolishScratch& scratch_;
 };
 
-// Measures the contour, until `enough` of it is found: its points are in an order in which any
-// first ones are spread well.
-int measure(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
-            const PolishConfig& config, int enough, std::span<Crossing> crossings) noexcept {
-  const RawContourConfig contour_config{config.search_mm, config.height_tolerance_mm};
-  int found_count = 0;
-  for (int i = 0; i < part.contour_count; ++i) {
-    crossings[i] = {};
-    if (part.contour[i].spread_mm < 0.0F || found_count >= enough) continue;
-    crossings[i] = measure_crossing(raw, work_T_object, part.contour[i], contour_config);
-    if (crossings[i].found) ++found_count;
+// What a round measures at a pose: the scan's points under the part, and where its lines leave it.
+class Measurement {
+ public:
+  Measurement(const model::Template& part, const RawScan& raw, const Pose& work_T_object,
+              const PolishConfig& config, PolishScratch& scratch) noexcept
+      : part_(part), raw_(raw), work_T_object_(work_T_object), config_(config), scratch_(scratch) {}
+
+  /// Returns how many crossings were found. `part_only`: of a first part of the contour, whose
+  /// points are in an order in which any first ones are spread well, and of a quarter of the
+  /// points.
+  int measure(bool part_only, Executor& executor) noexcept {
+    part_only_ = part_only;
+    count_ = part_only ? std::min(part_.contour_count, kContourToComeHome) : part_.contour_count;
+    for_each_chunk(executor, 1 + kContourChunkCount, *this);
+    std::fill(scratch_.crossings.begin() + count_, scratch_.crossings.begin() + part_.contour_count,
+              Crossing{});
+    return static_cast<int>(std::count_if(scratch_.crossings.begin(),
+                                          scratch_.crossings.begin() + count_,
+                                          [](const Crossing& c) { return c.found; }));
   }
-  return found_count;
-}
+  /// A chunk of the work: the surface, or a share of the contour.
+  void operator()(int chunk) noexcept {
+    if (chunk == 0) {
+      gather(part_, raw_, work_T_object_, part_only_, scratch_.footprint);
+    } else {
+      cross((chunk - 1) * count_ / kContourChunkCount, chunk * count_ / kContourChunkCount);
+    }
+  }
+
+ private:
+  static constexpr int kContourChunkCount = 4;
+
+  void cross(int begin, int end) noexcept {
+    const RawContourConfig config{config_.search_mm, config_.height_tolerance_mm};
+    for (int i = begin; i < end; ++i) {
+      const model::ContourPoint& p = part_.contour[i];
+      scratch_.crossings[i] =
+          p.spread_mm < 0.0F ? Crossing{} : measure_crossing(raw_, work_T_object_, p, config);
+    }
+  }
+
+  const model::Template& part_;
+  const RawScan& raw_;
+  const Pose& work_T_object_;
+  const PolishConfig& config_;
+  PolishScratch& scratch_;
+  bool part_only_ = false;
+  int count_ = 0;
+};
 
 // Both problems are linear but for the losses: a few steps settle them far below what the points
 // can tell.
@@ -188,18 +224,17 @@ PolishScratch take_polish_scratch(Arena& arena) noexcept {
 
 Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                             const Pose& work_T_object, const PolishConfig& config,
-                            PolishScratch& scratch) noexcept {
+                            PolishScratch& scratch, Executor& executor) noexcept {
   PolishResult out;
   out.work_T_object = work_T_object;
   Sigmas sigmas{part.noise_mm, 0.5 * part.pitch_mm};
   for (int round = 0; round < config.round_count; ++round) {
     const bool is_last = round + 1 == config.round_count;
-    out.crossing_count =
-        measure(part, raw, out.work_T_object, config,
-                is_last ? part.contour_count : kCrossingsToComeHome, scratch.crossings);
-    gather(part, raw, out.work_T_object, !is_last, scratch.footprint);
-    if (!is_last && scratch.footprint.count < kPointsToComeHome)
-      gather(part, raw, out.work_T_object, false, scratch.footprint);
+    Measurement measurement(part, raw, out.work_T_object, config, scratch);
+    out.crossing_count = measurement.measure(!is_last, executor);
+    const bool is_enough =
+        out.crossing_count >= kCrossingsToComeHome && scratch.footprint.count >= kPointsToComeHome;
+    if (!is_last && !is_enough) out.crossing_count = measurement.measure(false, executor);
     // The reach shrinks with the rounds: wide to come home, narrow to shut out what is not ours.
     const double reach_mm = std::max(config.search_mm / (round + 1), 1.5 * part.pitch_mm);
     const PolishProblem problem(part, config, reach_mm, sigmas, scratch);

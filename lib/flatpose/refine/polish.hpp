@@ -8,6 +8,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/executor.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/refine/footprint.hpp"
@@ -40,7 +41,7 @@ struct PolishResult {
 [[nodiscard]] Matrix<6> covariance_seen_from(const Matrix<6>& covariance,
                                              const Pose& first_T_other) noexcept;
 
-/// What was measured in a round; one for each polish that runs at a time.
+/// What was measured in a round.
 struct PolishScratch {
   std::span<Crossing> crossings;  ///< By contour point.
   Footprint footprint;
@@ -52,6 +53,6 @@ struct PolishScratch {
 /// scratch of its own.
 [[nodiscard]] Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                                           const Pose& work_T_object, const PolishConfig& config,
-                                          PolishScratch& scratch) noexcept;
+                                          PolishScratch& scratch, Executor& executor) noexcept;
 
 }  // namespace flatpose::refine

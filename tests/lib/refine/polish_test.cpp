@@ -69,7 +69,7 @@ Polished polished(const model::Template& part, const MadeScan& scan, const Pose&
   const MadeScene made(scan);
   const RawScan raw{scan.view(), {}, &made.scene.map};
   Polished out;
-  out.result = polish(part, raw, start, {}, out.scratch);
+  out.result = polish(part, raw, start, {}, out.scratch, callers_thread);
   return out;
 }
 

@@ -55,7 +55,7 @@ Pose refined(const model::Template& part, const sim::SimulatedScan& scan, const 
   std::vector<std::byte> polish_memory(1'000'000);
   Arena polish_arena{std::span(polish_memory)};
   PolishScratch scratch = take_polish_scratch(polish_arena);
-  const auto polished = polish(part, raw, narrow.x, settings.polish, scratch);
+  const auto polished = polish(part, raw, narrow.x, settings.polish, scratch, callers_thread);
   EXPECT_TRUE(polished) << to_string(polished.status());
   return polished->work_T_object;
 }
