@@ -24,20 +24,24 @@ void copy_ends(ImageView<float> image) noexcept {
 
 }  // namespace
 
-Status normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
-                  ImageView<float> normal_y, VectorPath path) noexcept {
+Status check_normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
+                        ImageView<float> normal_y) noexcept {
   if (!(cell_mm > 0.0) || !std::isfinite(cell_mm)) return Status::kInvalidArgument;
-  if (!same_shape(height_mm, normal_x) || !same_shape(height_mm, normal_y))
-    return Status::kShapeMismatch;
-  if (height_mm.empty()) return Status::kOk;
+  return same_shape(height_mm, normal_x) && same_shape(height_mm, normal_y)
+             ? Status::kOk
+             : Status::kShapeMismatch;
+}
+
+void write_normals(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
+                   ImageView<float> normal_y, int row_begin, int row_end,
+                   VectorPath path) noexcept {
   const RowKernels& kernels = row_kernels(path);
   const int w = height_mm.width_px;
-  const int h = height_mm.height_px;
   // Two cells in a row have but one difference, which the repeated border halves.
   const float per_mm = static_cast<float>(1.0 / cell_mm);
   const float scale_x = w == 2 ? 2.0F * per_mm : per_mm;
-  const float scale_y = h == 2 ? 2.0F * per_mm : per_mm;
-  for (int y = 0; y < h; ++y) {
+  const float scale_y = height_mm.height_px == 2 ? 2.0F * per_mm : per_mm;
+  for (int y = row_begin; y < row_end; ++y) {
     float* const x = normal_x.row(y);
     float* const down = normal_y.row(y);
     kernels.sobel(three_rows(height_mm, y), w, x, down);
@@ -45,8 +49,19 @@ Status normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<fl
     copy_sides(w, x);
     copy_sides(w, down);
   }
+}
+
+void close_normals(ImageView<float> normal_x, ImageView<float> normal_y) noexcept {
   copy_ends(normal_x);
   copy_ends(normal_y);
+}
+
+Status normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
+                  ImageView<float> normal_y, VectorPath path) noexcept {
+  const Status status = check_normal_map(height_mm, cell_mm, normal_x, normal_y);
+  if (status != Status::kOk || height_mm.empty()) return status;
+  write_normals(height_mm, cell_mm, normal_x, normal_y, 0, height_mm.height_px, path);
+  close_normals(normal_x, normal_y);
   return Status::kOk;
 }
 

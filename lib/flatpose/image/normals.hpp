@@ -22,6 +22,14 @@ namespace flatpose::image {
 Status normal_map(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
                   ImageView<float> normal_y, VectorPath path = VectorPath::kPortable) noexcept;
 
+/// normal_map() in parts, for several to write: first the check, then all rows, at last the ring.
+[[nodiscard]] Status check_normal_map(ImageView<const float> height_mm, double cell_mm,
+                                      ImageView<float> normal_x,
+                                      ImageView<float> normal_y) noexcept;
+void write_normals(ImageView<const float> height_mm, double cell_mm, ImageView<float> normal_x,
+                   ImageView<float> normal_y, int row_begin, int row_end, VectorPath path) noexcept;
+void close_normals(ImageView<float> normal_x, ImageView<float> normal_y) noexcept;
+
 /// The third component of a normal kept as its first two.
 [[nodiscard]] inline float normal_z(float normal_x, float normal_y) noexcept {
   const float rest = 1.0F - normal_x * normal_x - normal_y * normal_y;

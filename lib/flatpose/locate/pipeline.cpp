@@ -5,6 +5,7 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/locate/acceptance.hpp"
+#include "flatpose/locate/features.hpp"
 #include "flatpose/locate/pose_set.hpp"
 #include "flatpose/locate/refinement.hpp"
 #include "flatpose/locate/settings.hpp"
@@ -123,28 +124,8 @@ class Pipeline {
     const double place_step_mm = settings_.places.stride_px * work_.coarse.grid.cell_mm;
     instances_ = work_.instances;
     tried_ = PoseSet(work_.starts, place_step_mm, settings_.search.angle_step_rad);
-    Status s = refine::build_fine_images(scene_, work_.fine);
-    if (s != Status::kOk) return s;
-    s = build_coarse_images();
-    for (int y = 0; y < work_.claimed.height_px; ++y)
-      std::fill_n(work_.claimed.row(y), work_.claimed.width_px, 0);
+    const Status s = build_features(scene_, settings_, arena_, host_.executor, work_);
     result_.timings.features_us = lap();
-    return s;
-  }
-
-  Status build_coarse_images() noexcept {
-    Status s =
-        search::halve_heights(scene_, settings_.verify.height_tolerance_mm, arena_, work_.coarse);
-    if (s != Status::kOk) return s;
-    s = search::fit_tilt_field(work_.coarse.filled_mm, work_.coarse.grid.cell_mm,
-                               settings_.tilt_radius_px, arena_, work_.tilt,
-                               settings_.places.stride_px, limits_.vector_path);
-    if (s != Status::kOk) return s;
-    s = search::collect_places(work_.tilt, settings_.places, work_.places);
-    if (s != Status::kOk) return s;
-    s = search::build_search_images(scene_, settings_.search_images, work_.places.range, arena_,
-                                    work_.coarse);
-    if (s == Status::kOk) search::set_heights(work_.tilt, work_.coarse, work_.places);
     return s;
   }
 

@@ -5,6 +5,7 @@
 #include "flatpose/image/canny.hpp"
 #include "flatpose/image/dark_pit.hpp"
 #include "flatpose/image/fill.hpp"
+#include "flatpose/locate/features.hpp"
 #include "flatpose/rectify/rectify.hpp"
 #include "flatpose/rectify/survey.hpp"
 
@@ -45,6 +46,7 @@ std::size_t required_bytes_on(const rectify::Grid& grid, const Limits& limits) n
   with_scratch([&] { image::reserve_dark_pit_scratch(arena, grid.width_px, grid.height_px); });
   with_scratch([&] { image::reserve_edge_scratch(arena, grid.width_px, grid.height_px); });
   (void)take_workspace(arena, grid);
+  with_scratch([&] { reserve_feature_scratch(arena, grid); });
   with_scratch([&] { search::reserve_search_scratch(arena, grid); });
   return arena.required_bytes();
 }

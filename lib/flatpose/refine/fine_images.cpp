@@ -15,14 +15,21 @@ FineImages take_fine_images(Arena& arena, const rectify::Grid& grid) noexcept {
   return images;
 }
 
-Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept {
+Status begin_fine_images(const scene::Scene& scene, FineImages& images) noexcept {
   images.height_mm = scene.map.height_mm;
   images.filled_mm = scene.filled_mm;
   images.missing = scene.missing;
-  if (const Status s =
-          image::edge_distances(scene.edges, {}, images.edge_distance_third_px, scene.vector_path);
-      s != Status::kOk)
-    return s;
+  return image::check_normal_map(scene.filled_mm, images.grid.cell_mm, images.normal_x,
+                                 images.normal_y);
+}
+
+Status write_fine_distances(const scene::Scene& scene, FineImages& images) noexcept {
+  return image::edge_distances(scene.edges, {}, images.edge_distance_third_px, scene.vector_path);
+}
+
+Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept {
+  if (const Status s = begin_fine_images(scene, images); s != Status::kOk) return s;
+  if (const Status s = write_fine_distances(scene, images); s != Status::kOk) return s;
   return image::normal_map(scene.filled_mm, images.grid.cell_mm, images.normal_x, images.normal_y,
                            scene.vector_path);
 }

@@ -19,7 +19,7 @@ struct FineImages {
   rectify::Grid grid;
   ImageView<const float> height_mm;  ///< NaN where missing.
   ImageView<const float> filled_mm;
-  ImageView<const std::uint8_t> missing;  ///< As in the scene.
+  ImageView<const std::uint8_t> missing;      ///< As in the scene.
   image::OctantImage edge_distance_third_px;  ///< Chamfer distance per falling direction.
   ImageView<float> normal_x;
   ImageView<float> normal_y;
@@ -44,5 +44,10 @@ struct BoundedDistance {
 
 /// Fills the images from the scene.  Cost: four passes over the map.
 [[nodiscard]] Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept;
+
+/// build_fine_images() in parts: what is the scene's own; the distances; normals are those of
+/// image::write_normals().
+[[nodiscard]] Status begin_fine_images(const scene::Scene& scene, FineImages& images) noexcept;
+[[nodiscard]] Status write_fine_distances(const scene::Scene& scene, FineImages& images) noexcept;
 
 }  // namespace flatpose::refine

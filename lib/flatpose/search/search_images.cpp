@@ -168,25 +168,6 @@ void spread_directions(const image::OctantImage& costs, int image_count,
   }
 }
 
-// The scene's edges at the coarse level: found where they are sharpest, drawn where they are
-// needed.
-Status spread_edge_costs(const scene::Scene& scene, Arena& scratch,
-                         const SearchImages& images) noexcept {
-  const ArenaScope scope(scratch);
-  const image::OctantImage costs{
-      scratch.take_image<image::OctantCell>(images.grid.width_px, images.grid.height_px)};
-  if (scratch.failed()) return Status::kOutOfMemory;
-  image::ChannelConfig config;
-  config.edge_cells = 2;
-  config.distance_max_third_px = kEdgeCostMax;
-  if (const Status s = image::edge_distances(scene.edges, config, costs, scene.vector_path);
-      s != Status::kOk)
-    return s;
-  if (!images.config.use_directions) forget_directions(costs);
-  spread_directions(costs, images.config.use_directions ? image::kOctantCount : 1, images);
-  return Status::kOk;
-}
-
 }  // namespace
 
 std::int16_t normal_unit(double component, const SearchImagesConfig& config) noexcept {
@@ -213,7 +194,11 @@ SearchImages take_search_images(Arena& arena, const rectify::Grid& fine, bool wi
   return images;
 }
 
-void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
+void reserve_edge_cost_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
+  (void)arena.take_image<image::OctantCell>(coarse.width_px, coarse.height_px);
+}
+
+void reserve_surface_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
   const int width_px = coarse.width_px;
   const int height_px = coarse.height_px;
   {
@@ -221,11 +206,15 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
     (void)arena.take_image<std::uint8_t>(width_px, height_px);
     image::reserve_fill_scratch(arena, width_px);
   }
-  {
-    const ArenaScope scope(arena);  // spread_edge_costs
-    (void)arena.take_image<image::OctantCell>(width_px, height_px);
-  }
   (void)take_normals(arena, width_px, height_px);  // and fewer for the heights
+}
+
+void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
+  {
+    const ArenaScope scope(arena);
+    reserve_edge_cost_scratch(arena, coarse);
+  }
+  reserve_surface_scratch(arena, coarse);
 }
 
 Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
@@ -241,21 +230,48 @@ Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
                           : s;
 }
 
-Status build_search_images(const scene::Scene& scene, const SearchImagesConfig& config,
-                           const HeightRange& range, Arena& scratch,
-                           SearchImages& images) noexcept {
+Status begin_search_images(const SearchImagesConfig& config, SearchImages& images) noexcept {
   if (!is_valid(config)) return Status::kInvalidArgument;
   if (config.node_side > 0 && images.nodes.bytes.empty()) return Status::kInvalidArgument;
   images.config = config;
   images.lattice =
       make_lattice(images.grid.width_px, images.grid.height_px, config.stride_px, config.reach_px);
-  choose_units(range, images);
-  const Status s =
-      config.use_height ? spread_heights(images, scratch) : spread_normals(images, scratch);
-  if (s != Status::kOk) return s;
-  if (const Status e = spread_edge_costs(scene, scratch, images); e != Status::kOk) return e;
-  build_node_images(images);
   return Status::kOk;
+}
+
+Status write_surface(const HeightRange& range, Arena& scratch, SearchImages& images) noexcept {
+  choose_units(range, images);
+  return images.config.use_height ? spread_heights(images, scratch)
+                                  : spread_normals(images, scratch);
+}
+
+// The scene's edges at the coarse level: found where they are sharpest, drawn where they are
+// needed.
+Status write_edge_costs(const scene::Scene& scene, Arena& scratch,
+                        const SearchImages& images) noexcept {
+  const ArenaScope scope(scratch);
+  const image::OctantImage costs{
+      scratch.take_image<image::OctantCell>(images.grid.width_px, images.grid.height_px)};
+  if (scratch.failed()) return Status::kOutOfMemory;
+  image::ChannelConfig config;
+  config.edge_cells = 2;
+  config.distance_max_third_px = kEdgeCostMax;
+  if (const Status s = image::edge_distances(scene.edges, config, costs, scene.vector_path);
+      s != Status::kOk)
+    return s;
+  if (!images.config.use_directions) forget_directions(costs);
+  spread_directions(costs, images.config.use_directions ? image::kOctantCount : 1, images);
+  return Status::kOk;
+}
+
+Status build_search_images(const scene::Scene& scene, const SearchImagesConfig& config,
+                           const HeightRange& range, Arena& scratch,
+                           SearchImages& images) noexcept {
+  Status s = begin_search_images(config, images);
+  if (s == Status::kOk) s = write_surface(range, scratch, images);
+  if (s == Status::kOk) s = write_edge_costs(scene, scratch, images);
+  if (s == Status::kOk) build_node_images(images);
+  return s;
 }
 
 }  // namespace flatpose::search

@@ -86,8 +86,11 @@ struct SearchImages {
 [[nodiscard]] SearchImages take_search_images(Arena& arena, const rectify::Grid& fine,
                                               bool with_nodes = false) noexcept;
 
-/// Takes (and leaves taken) the scratch of the two calls below on the coarse level, also from a
-/// measuring arena.
+/// Takes (and leaves taken) the scratch of write_edge_costs() alone, of halve_heights() and
+/// write_surface(), and of any of the calls below, on the coarse level, also from a measuring
+/// arena.
+void reserve_edge_cost_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
+void reserve_surface_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 
 /// Halves the scene's heights; heights more than `jump_mm` apart are not averaged.
@@ -102,5 +105,14 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 [[nodiscard]] Status build_search_images(const scene::Scene& scene,
                                          const SearchImagesConfig& config, const HeightRange& range,
                                          Arena& scratch, SearchImages& images) noexcept;
+
+/// build_search_images() in parts: first begin_search_images(), then the two others, which touch
+/// nothing of each other's, at last build_node_images().
+[[nodiscard]] Status begin_search_images(const SearchImagesConfig& config,
+                                         SearchImages& images) noexcept;
+[[nodiscard]] Status write_surface(const HeightRange& range, Arena& scratch,
+                                   SearchImages& images) noexcept;
+[[nodiscard]] Status write_edge_costs(const scene::Scene& scene, Arena& scratch,
+                                      const SearchImages& images) noexcept;
 
 }  // namespace flatpose::search
