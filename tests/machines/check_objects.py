@@ -15,6 +15,7 @@ FUSED = re.compile(r"\sfn?m(la|ls|add|sub)\s")
 LANE_MOVE = re.compile(r"\s(umov|smov|ins|mov)\s.*v\d+\.b\[\d+\]")
 NEON_WORDS = {  # by object; two rooms call theirs row_kernels
     "block_search": [r"uabd\s+v\d+\.16b", r"umin\s+v\d+\.16b", r"cmh[is]\s+v\d+\.16b"],
+    "lay_points": [r"fdiv\s+v\d+\.2d", r"fcvtzs\s+v\d+\.2d"],
     "row_kernels": [r"umin\s+v\d+\.16b", r"fsqrt\s+v\d+\.4s", r"fdiv\s+v\d+\.4s", r"fcvtl2\s", r"fcvtzs\s+v\d+\.2d"],
     "surface_sums": [r"fcvtl\s+v\d+\.2d", r"fmul\s+v\d+\.2d"],
     "tilt_rows": [r"fmul\s+v\d+\.2d", r"fdiv\s+v\d+\.2d", r"fsqrt\s+v\d+\.2d"],
