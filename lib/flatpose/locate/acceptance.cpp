@@ -15,6 +15,15 @@ constexpr double kClaimedShareMax = 0.3;
 
 }  // namespace
 
+bool Acceptance::is_claimed_near(const Vec3& position_work_mm, int match_count) const noexcept {
+  // Cells beyond the contour that a claim marks, or a verification looks at.
+  constexpr double kMargin_px = 12.0;
+  const double near_mm = 2.0 * part_.radius_mm + kMargin_px * fine_.grid.cell_mm;
+  for (int i = match_count; i < result_.match_count; ++i)
+    if (norm(accepted_work_mm_[i] - position_work_mm) < near_mm) return true;
+  return false;
+}
+
 void Acceptance::note_rejected(double score) noexcept {
   result_.best_rejected_score = std::max(result_.best_rejected_score, score);
 }
@@ -31,6 +40,7 @@ Verdict Acceptance::consider(const refine::PolishResult& polished) noexcept {
     note_rejected(v.score);
     return verdict;
   }
+  accepted_work_mm_[result_.match_count] = pose.position_mm;
   result_.matches[result_.match_count++] = to_match(polished, v);
   claim(part_, fine_, pose, settings_.verify, claimed_);
   return verdict;

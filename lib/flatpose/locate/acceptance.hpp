@@ -2,6 +2,8 @@
 // The verdict on refined poses: what becomes a match, what is another pose in a match's place, and
 // in which order the matches are reported.
 
+#include <array>
+
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/geometry/frames.hpp"
 #include "flatpose/locate/locator.hpp"
@@ -41,6 +43,8 @@ class Acceptance {
   /// What a pose would be if no match stood in its way.
   [[nodiscard]] Verdict judge(const refine::PolishResult& polished,
                               const Verification& v) const noexcept;
+  /// Whether a match accepted after the first `match_count` may bear on a pose that stands here.
+  [[nodiscard]] bool is_claimed_near(const Vec3& position_work_mm, int match_count) const noexcept;
   /// Remembers how near a pose came that is no match.
   void note_rejected(double score) noexcept;
   /// Puts the matches in the order asked for.
@@ -65,6 +69,7 @@ class Acceptance {
   const refine::FineImages& fine_;
   const ImageView<std::uint8_t>& claimed_;
   LocateResult& result_;
+  std::array<Vec3, kMatchCountMax> accepted_work_mm_;  ///< In the order of acceptance.
   bool is_ambiguous_ = false;
 };
 

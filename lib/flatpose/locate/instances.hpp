@@ -15,6 +15,7 @@ struct Instance {
   Verification verification;
   bool is_open = true;  ///< Neither a match nor out of the question.
   bool is_polished = false;
+  int judged_at = -1;  ///< How many matches there were then; -1: not yet.
   refine::PolishResult polished;
 
   /// What poses are ordered by.

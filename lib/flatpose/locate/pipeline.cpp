@@ -287,7 +287,8 @@ class Pipeline {
     bool has_new = false;
     for (const int i : {best, index}) {
       Instance& instance = instances_[i];
-      if (!instance.is_open) continue;
+      if (!instance.is_open || !has_news(instance)) continue;
+      instance.judged_at = result_.match_count;
       const Verdict verdict = acceptance_.consider(instance.polished);
       if (verdict == Verdict::kGuess) {
         close_place_of(instance);
@@ -297,6 +298,13 @@ class Pipeline {
       has_new |= verdict == Verdict::kMatch;
     }
     return has_new;
+  }
+
+  // Whether a verdict on it may be another than last time.
+  [[nodiscard]] bool has_news(const Instance& instance) const noexcept {
+    return instance.judged_at < 0 ||
+           acceptance_.is_claimed_near(instance.polished.work_T_object.position_mm,
+                                       instance.judged_at);
   }
 
   // Where the best that fits is a guess, what fits less is none the better.
