@@ -25,7 +25,8 @@ Shot take_shot(const ShotConfig& config) {
 }
 
 locate::LocateResult Searcher::locate(const Shot& shot, const model::Template& part,
-                                      const locate::LocateConfig& config, VectorPath path) {
+                                      const locate::LocateConfig& config, VectorPath path,
+                                      Executor& executor) {
   locate::Limits limits = tool::limits_for(shot.loaded.scan);
   limits.vector_path = path;
   const std::size_t size_bytes = locate::Locator::required_bytes(limits);
@@ -33,10 +34,11 @@ locate::LocateResult Searcher::locate(const Shot& shot, const model::Template& p
     memory_ = std::make_unique<tool::Memory>(size_bytes);
   locate::Locator locator;
   locate::LocateResult result;
+  const port::SteadyClock clock;
   Status status = locator.init(limits, memory_->span());
   if (status == Status::kOk)
     status = locator.locate(part, shot.loaded.scan.view(), shot.loaded.frames, config,
-                            port::SteadyClock{}, result);
+                            {clock, executor}, result);
   if (status != Status::kOk)
     throw std::runtime_error("locate '" + shot.part + "' in " + shot.loaded.path + ": " +
                              to_string(status));

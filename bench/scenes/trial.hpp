@@ -42,7 +42,8 @@ class Searcher {
   /// Fails: std::runtime_error when locate() refuses.
   [[nodiscard]] locate::LocateResult locate(const Shot& shot, const model::Template& part,
                                             const locate::LocateConfig& config,
-                                            VectorPath path = port::best_vector_path());
+                                            VectorPath path = port::best_vector_path(),
+                                            Executor& executor = callers_thread);
 
  private:
   std::unique_ptr<tool::Memory> memory_;

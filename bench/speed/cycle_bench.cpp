@@ -13,6 +13,7 @@
 #include "bench/speed/benches.hpp"
 #include "bench/speed/paths.hpp"
 #include "bench/speed/shots.hpp"
+#include "port/linux/threads/worker_pool.hpp"
 
 namespace flatpose::bench {
 namespace {
@@ -38,8 +39,9 @@ double median(std::vector<double> values) {
 
 using Samples = std::map<std::string, std::vector<double>>;
 
-/// `run` is a path's name; with "_2_threads" behind it, it fills the report's column of two
-/// threads.
+/// `run` is a path's name, with kTwoThreads behind it where two threads ran.
+constexpr const char* kTwoThreads = "_2_threads";
+
 void note(const locate::Timings& t, const std::string& run, Samples& samples) {
   const std::pair<const char*, std::int64_t> stages[] = {
       {"rectify", t.rectify_us}, {"features", t.features_us}, {"search", t.search_us},
@@ -55,6 +57,7 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
   Searcher searcher;
   benchmark::DoNotOptimize(
       searcher.locate(shots[0], part, {}, vector_paths().back().path));  // warm
+  port::WorkerPool two_threads(2);
   Samples samples;
   for (auto _ : state) {
     for (int i = 0; i < seed_count; ++i) {
@@ -66,7 +69,10 @@ void run_cycles(benchmark::State& state, const std::string& scene, const ScanSiz
         note(result.timings, path.name, samples);
         const std::uint64_t digest = locate::digest(result);
         if (path.path == VectorPath::kPortable) first_digest = digest;
-        if (digest != first_digest) throw std::runtime_error("paths differ in " + shot.loaded.path);
+        const locate::LocateResult shared = searcher.locate(shot, part, {}, path.path, two_threads);
+        note(shared.timings, path.name + kTwoThreads, samples);
+        if (digest != first_digest || locate::digest(shared) != first_digest)
+          throw std::runtime_error("paths or threads differ in " + shot.loaded.path);
       }
     }
   }
