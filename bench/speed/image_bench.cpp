@@ -141,11 +141,11 @@ void sobel_opencv(Map& m) {
   cv::Sobel(m.heights, m.y, CV_32F, 0, 1, 3, 0.125, 0.0, cv::BORDER_REPLICATE);
 }
 
-void chamfer_ours(Map& m) { check(image::chamfer_distance(m.mask, m.distance), "chamfer"); }
+void chamfer_ours(Map& m) { check(image::chamfer_distance(m.mask, m.distance, m.path), "chamfer"); }
 void chamfer_opencv(Map& m) { cv::distanceTransform(m.away_from_edges, m.out, cv::DIST_L2, 3); }
 
 void octants_ours(Map& m) {
-  check(image::edge_distances(m.scene.edges, {}, m.octants), "edge_distances");
+  check(image::edge_distances(m.scene.edges, {}, m.octants, m.path), "edge_distances");
 }
 void octants_opencv(Map& m) {
   for (const cv::Mat& octant : m.away_from_octant)

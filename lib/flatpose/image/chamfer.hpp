@@ -7,6 +7,7 @@
 
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
+#include "flatpose/core/vector_path.hpp"
 
 namespace flatpose::image {
 
@@ -19,6 +20,7 @@ Status chamfer_distance(ImageView<const std::uint8_t> mask,
 
 /// The same, at most 255 (85 cells).
 Status chamfer_distance(ImageView<const std::uint8_t> mask,
-                        ImageView<std::uint8_t> distance_third_px) noexcept;
+                        ImageView<std::uint8_t> distance_third_px,
+                        VectorPath path = VectorPath::kPortable) noexcept;
 
 }  // namespace flatpose::image

@@ -64,6 +64,12 @@ struct RowKernels {
   void (*shorten_forward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
   void (*shorten_backward)(const OctantCell* previous, int width_px, OctantCell* row) noexcept;
 
+  /// The same of one byte a cell.
+  void (*shorten_bytes_forward)(const std::uint8_t* previous, int width_px,
+                                std::uint8_t* row) noexcept;
+  void (*shorten_bytes_backward)(const std::uint8_t* previous, int width_px,
+                                 std::uint8_t* row) noexcept;
+
   /// Finds the cells of a batch that are jumps of at least `jump_low_mm`; measures those found.
   void (*test_jumps)(const JumpField& field, float jump_low_mm, JumpBatch& batch) noexcept;
   void (*measure_jumps)(const JumpField& field, JumpBatch& batch) noexcept;

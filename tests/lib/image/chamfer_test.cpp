@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/lib/image/image.hpp"
+#include "tests/lib/search/vector_paths.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -64,6 +65,25 @@ TEST(ChamferDistance, EqualsBruteForceOnWideSparseMasksBeyondSaturation) {
   ASSERT_EQ(chamfer_distance(far.view(), distance.view()), Status::kOk);
   EXPECT_EQ(distance(21844, 0), 65532);
   EXPECT_EQ(distance(22999, 0), 65535);
+}
+
+TEST(ChamferDistance, IsTheSameOnEveryPathAtEveryWidth) {
+  for (int w = 1; w < 200; ++w) {
+    const Image<float> noise = random_image(w, 9, static_cast<unsigned>(w));
+    const auto mask = Image<std::uint8_t>::of(w, 9, [&](int x, int y) {
+      return noise(x, y) > 9.8F - 0.02F * static_cast<float>(w) ? 1 : 0;
+    });
+    Image<std::uint16_t> wide(w, 9);
+    ASSERT_EQ(chamfer_distance(mask.view(), wide.view()), Status::kOk);
+    for (const VectorPath path : vector_paths()) {
+      Image<std::uint8_t> distance(w, 9, 7);
+      ASSERT_EQ(chamfer_distance(mask.view(), distance.view(), path), Status::kOk);
+      for (int y = 0; y < 9; ++y) {
+        for (int x = 0; x < w; ++x)
+          ASSERT_EQ(distance(x, y), std::min<int>(wide(x, y), 255)) << w << ' ' << x << ' ' << y;
+      }
+    }
+  }
 }
 
 // OpenCV's 3x3 transform has the same paths with steps of 0.955 and 1.3693, so ours lies between
