@@ -140,6 +140,7 @@ class Pipeline {
     if (!found) return found.status();
     candidate_count_ = found->candidate_count;
     result_.hypothesis_count += found->hypothesis_count;
+    result_.evaluated_count += found->evaluated_count;
     result_.candidate_count += candidate_count_;
     result_.timings.search_us += lap();
     return Status::kOk;
@@ -346,6 +347,11 @@ class Pipeline {
     acceptance_.sort();
     if (is_late()) {
       result_.outcome = Outcome::kDeadline;
+      result_.is_exact = false;
+      // No score is above one, and the search's costs bound no score.
+      double best_score = 0.0;
+      for (const Match& match : result_.found()) best_score = std::max(best_score, match.score);
+      result_.bound_gap = 1.0 - best_score;
     } else if (result_.match_count == 0) {
       result_.outcome = Outcome::kNoMatch;
     } else {

@@ -55,11 +55,10 @@ std::string match_json(const model::Template& part, const LoadedScan& loaded,
   json["matches"] = Json::array();
   for (const locate::Match& match : result.found()) json["matches"].push_back(match_object(match));
   json["timings_us"] = timings_object(result.timings, loaded.load_us);
-  // The search goes through every hypothesis, unless its time ran out.
   json["search"] = {{"hypotheses", result.hypothesis_count},
-                    {"evaluated", result.hypothesis_count},
-                    {"exact", result.outcome != locate::Outcome::kDeadline},
-                    {"bound_gap", 0}};
+                    {"evaluated", result.evaluated_count},
+                    {"exact", result.is_exact},
+                    {"bound_gap", result.bound_gap}};
   json["memory"] = {{"arena_bytes", arena_bytes}, {"peak_bytes", result.peak_bytes}};
   json["digest"] = formatted("%016llx", static_cast<unsigned long long>(locate::digest(result)));
   return line_of(json);

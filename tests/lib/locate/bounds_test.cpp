@@ -241,6 +241,10 @@ TEST(Deadline, ReturnsVerifiedMatchesOnlyWheneverItStrikes) {
   const LocateResult whole = locating.result;
   ASSERT_EQ(whole.outcome, Outcome::kOk);
   ASSERT_EQ(whole.match_count, 3);
+  EXPECT_TRUE(whole.is_exact);
+  EXPECT_EQ(whole.bound_gap, 0.0);
+  EXPECT_GT(whole.evaluated_count, 0);
+  EXPECT_LE(whole.evaluated_count, whole.hypothesis_count);
   const int look_count = kLookMax - patient.looks_left();
   int last_count = 0;
   bool some_are_partial = false;
@@ -249,6 +253,12 @@ TEST(Deadline, ReturnsVerifiedMatchesOnlyWheneverItStrikes) {
     EXPECT_EQ(locating.result.outcome, Outcome::kDeadline) << look << " of " << look_count;
     EXPECT_GE(locating.result.match_count, last_count);
     last_count = locating.result.match_count;
+    EXPECT_FALSE(locating.result.is_exact);
+    if (last_count == 0) {
+      EXPECT_EQ(locating.result.bound_gap, 1.0);
+    } else {
+      EXPECT_NEAR(locating.result.bound_gap, 1.0 - locating.result.matches[0].score, 0.05);
+    }
     some_are_partial |= last_count > 0 && last_count < 3;
     for (const Match& m : locating.result.found()) {
       const bool same =
