@@ -83,7 +83,7 @@ Status build_scene(const RangeImageView& scan, const Frames& frames, const recti
     return s;
   }
   const Status filled = image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing,
-                                            arena, config.vector_path);
+                                            arena, config.vector_path, executor);
   if (filled != Status::kOk) return filled;
   if (const Status s = image::lower_dark_pits(pit_config(config), arena, scene.missing,
                                               scene.filled_mm, config.vector_path);

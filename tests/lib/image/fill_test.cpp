@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
+#include "tests/lib/image/executors.hpp"
 #include "tests/lib/image/image.hpp"
+#include "tests/lib/search/vector_paths.hpp"
 
 namespace flatpose::image {
 namespace {
@@ -68,6 +71,38 @@ TEST_F(FillMissing, EqualsBruteForceOnAllMasksUpTo4x3AndOnLargerOnes) {
       if (lost(i % 40, i / 40) < static_cast<float>(seed) - 9.5F) z(i % 40, i / 40) = kMissing;
     }
     check(z);
+  }
+}
+
+TEST_F(FillMissing, IsTheSameWhoeverFillsAndOnEveryPath) {
+  constexpr int kWidth_px = 300, kHeight_px = 40;
+  memory_.resize(1 << 16);
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    Image<float> z = random_image(kWidth_px, kHeight_px, seed);
+    const Image<float> lost = random_image(kWidth_px, kHeight_px, seed + 100);
+    for (int i = 0; i < kWidth_px * kHeight_px; ++i) {
+      const int x = i % kWidth_px, y = i / kWidth_px;
+      // Gaps across the middle, where columns are parted.
+      const bool in_gap = y % 7 == 0 && std::abs(x - kWidth_px / 2) < 20 + y;
+      if (in_gap || lost(x, y) < 2.0F * static_cast<float>(seed) - 8.0F) z(x, y) = kMissing;
+    }
+    const auto expected =
+        Image<float>::of(kWidth_px, kHeight_px, [&](int x, int y) { return brute_force(z, x, y); });
+    for (const VectorPath path : vector_paths()) {
+      for_each_executor([&](Executor& executor) {
+        Arena arena{std::span(memory_)};
+        Image<float> filled(kWidth_px, kHeight_px);
+        Image<std::uint8_t> missing(kWidth_px, kHeight_px);
+        ASSERT_EQ(fill_missing(z.view(), filled.view(), missing.view(), arena, path, executor),
+                  Status::kOk);
+        for (int y = 0; y < kHeight_px; ++y) {
+          for (int x = 0; x < kWidth_px; ++x) {
+            ASSERT_EQ(filled(x, y), expected(x, y));
+            ASSERT_EQ(missing(x, y), std::isfinite(z(x, y)) ? 0 : 1);
+          }
+        }
+      });
+    }
   }
 }
 
