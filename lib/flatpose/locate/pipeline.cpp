@@ -136,7 +136,7 @@ class Pipeline {
         static_cast<std::size_t>(std::min(kCandidateCountMax, spare + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
         search::grid_search(work_.coarse, work_.tilt, work_.places, part_, anchor, settings_.search,
-                            arena_, work_.candidates.first(wanted));
+                            arena_, work_.candidates.first(wanted), host_.executor);
     if (!found) return found.status();
     candidate_count_ = found->candidate_count;
     result_.hypothesis_count += found->hypothesis_count;

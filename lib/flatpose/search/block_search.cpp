@@ -42,8 +42,8 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     const std::int32_t octant = images.config.use_directions ? from.octant : 0;
     out.contour[i].offset_bytes = octant * image_bytes + shift;
     out.contour[i].second_offset_bytes = surface_image + shift;
-    out.contour[i].rise_unit = bounded_rise(from.rise_unit);
-    include(out.contour[i].rise_unit);
+    out.contour[i].rise_row_bytes = rise_row_bytes(from.rise_unit);
+    include(bounded_rise(from.rise_unit));
   }
   for (int i = 0; i < projected.surface_count; ++i) {
     const ProjectedTemplate::Surface& from = projected.surface[i];
@@ -51,8 +51,8 @@ void shift(const ProjectedTemplate& projected, const SearchImages& images,
     out.surface[i].offset_bytes = surface_image + shift;
     out.surface[i].second_offset_bytes = surface_image + image_bytes + shift;
     if (images.config.use_height) {
-      out.surface[i].rise_unit = bounded_rise(from.rise_unit);
-      include(out.surface[i].rise_unit);
+      out.surface[i].rise_row_bytes = rise_row_bytes(from.rise_unit);
+      include(bounded_rise(from.rise_unit));
     } else {
       out.surface[i].low = static_cast<std::uint8_t>(from.normal_x_unit);
       out.surface[i].high = static_cast<std::uint8_t>(from.normal_y_unit);

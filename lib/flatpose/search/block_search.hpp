@@ -21,18 +21,24 @@ inline constexpr int kSectorCount = 4;
 inline constexpr std::uint8_t kNoAngle = 255;
 inline constexpr int kAngleCountMax = 720;
 
+/// The loop keeps what depends on a point's rise in rows of a table.
+inline constexpr int kLimitRowBytes = kBlockSize;
+
 /// A template point as the loop takes it.
 struct ShiftedPoint {
   std::int32_t offset_bytes = 0;         ///< To its edge, height or normal's x image.
   std::int32_t second_offset_bytes = 0;  ///< To its height (contour), normal's y (surface).
-  std::int16_t rise_unit = 0;            ///< Within +-kHeightUnitMax.
+  std::int16_t rise_row_bytes = 0;       ///< Rise, within +-kHeightUnitMax, x kLimitRowBytes.
   std::uint8_t low = 0;                  ///< Normals: the expected x and y.
   std::uint8_t high = 0;
 };
 
 /// Farther apart than this heights are alike, clamped as they are.
-[[nodiscard]] constexpr std::int16_t bounded_rise(std::int32_t rise_unit) noexcept {
-  return static_cast<std::int16_t>(std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax));
+[[nodiscard]] constexpr std::int32_t bounded_rise(std::int32_t rise_unit) noexcept {
+  return std::clamp(rise_unit, -kHeightUnitMax, kHeightUnitMax);
+}
+[[nodiscard]] constexpr std::int16_t rise_row_bytes(std::int32_t rise_unit) noexcept {
+  return static_cast<std::int16_t>(bounded_rise(rise_unit) * kLimitRowBytes);
 }
 
 /// All rises of some templates' points lie in it.

@@ -1,6 +1,7 @@
 #include "flatpose/search/grid_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "flatpose/core/maths.hpp"
@@ -13,14 +14,24 @@ namespace {
 
 static_assert(kAngleCountMax / kSectorCount < kNoAngle);
 
+// Bins are turned and searched some at a time: as many as their templates' memory holds.
+constexpr int kTurnedCountMax = 2 * kAngleCountMax;
+constexpr int kBinsAtOnceMax = 128;
+// Rows are shared out in so many bands; each place belongs to one.
+constexpr int kBandCount = 8;
+
 struct SearchMemory {
   SectorBests bests;
-  TurnedTemplate turned;
+  std::span<TurnedTemplate> turned;  // of the bins at hand
+  std::span<ShiftedTemplate> angles;
+  std::span<GroupTemplate> groups;
   std::span<Rotation> turns;  // by angle
   std::span<std::uint8_t> block_lows;
+  std::span<std::int32_t> row_counts;
 };
 
-SearchMemory take_search_memory(Arena& arena, std::size_t place_count, int angles) noexcept {
+SearchMemory take_search_memory(Arena& arena, std::size_t place_count, std::size_t row_count,
+                                int angles, bool with_nodes) noexcept {
   SearchMemory memory;
   for (int sector = 0; sector < kSectorCount; ++sector) {
     if (sector_begin(sector, angles) == sector_begin(sector + 1, angles)) continue;
@@ -28,7 +39,10 @@ SearchMemory take_search_memory(Arena& arena, std::size_t place_count, int angle
     memory.bests.angle[sector] = arena.take<std::uint8_t>(place_count);
   }
   memory.block_lows = take_block_lows(arena, place_count);
-  memory.turned = take_turned_template(arena);
+  memory.row_counts = arena.take<std::int32_t>(row_count);
+  memory.turned = arena.take<TurnedTemplate>(kBinsAtOnceMax);
+  memory.angles = arena.take<ShiftedTemplate>(kTurnedCountMax);
+  memory.groups = arena.take<GroupTemplate>(with_nodes ? kTurnedCountMax : 0);
   memory.turns = arena.take<Rotation>(kAngleCountMax);
   return memory;
 }
@@ -36,8 +50,10 @@ SearchMemory take_search_memory(Arena& arena, std::size_t place_count, int angle
 class Search {
  public:
   Search(const SearchImages& images, const TiltField& field, const Places& places,
-         const model::Template& part, int anchor_index, const GridSearchConfig& config) noexcept
-      : images_(images),
+         const model::Template& part, int anchor_index, const GridSearchConfig& config,
+         Executor& executor) noexcept
+      : executor_(executor),
+        images_(images),
         field_(field),
         places_(places),
         part_(part),
@@ -50,7 +66,9 @@ class Search {
                    config.vector_path) {}
 
   bool take_memory(Arena& scratch) noexcept {
-    memory_ = take_search_memory(scratch, places_.index(0, places_.height), angle_count_);
+    memory_ = take_search_memory(scratch, places_.index(0, places_.height),
+                                 static_cast<std::size_t>(places_.height), angle_count_,
+                                 images_.nodes.side > 0);
     if (scratch.failed()) return false;
     for (const auto& cost : memory_.bests.cost) std::fill(cost.begin(), cost.end(), kCostMax);
     for (const auto& angle : memory_.bests.angle) std::fill(angle.begin(), angle.end(), kNoAngle);
@@ -60,21 +78,11 @@ class Search {
   }
 
   void evaluate_all() noexcept {
-    const Turns turns{memory_.turns.first(static_cast<std::size_t>(angle_count_)),
-                      config_.cost_share_max};
-    const Turner turner(images_, projector_, turns);
-    const BinJob job{images_,
-                     places_,
-                     memory_.turned,
-                     memory_.bests,
-                     search_block_for(config_.vector_path),
-                     bound_nodes_for(config_.vector_path)};
-    for (int bin = 0; bin < kBinCount; ++bin) {
-      const int begin = places_.bin_begin[bin];
-      const int end = places_.bin_begin[bin + 1];
-      if (begin == end) continue;
-      turner.turn(bin, memory_.turned);
-      evaluated_count_ += search_bin(job, begin, end);
+    share_out_rows();
+    for (int bin = 0; bin < kBinCount;) {
+      bin = gather_bins(bin);
+      turn_bins();
+      search_bins();
     }
   }
 
@@ -85,12 +93,90 @@ class Search {
     return count;
   }
 
-  [[nodiscard]] std::int64_t evaluated_count() const noexcept { return evaluated_count_; }
+  [[nodiscard]] std::int64_t evaluated_count() const noexcept {
+    std::int64_t sum = 0;
+    for (const std::int64_t count : evaluated_counts_) sum += count;
+    return sum;
+  }
   [[nodiscard]] std::int64_t hypothesis_count() const noexcept {
     return places_.place_count * angle_count_;
   }
 
  private:
+  // As many blocks in each band, and rows of nodes undivided.
+  void share_out_rows() noexcept {
+    constexpr int kRowsAlike = kNodeSideMax;
+    const std::int32_t total = places_.bin_begin[kBinCount];
+    const std::span<std::int32_t> counts = memory_.row_counts;
+    std::fill(counts.begin(), counts.end(), 0);
+    for (std::int32_t i = 0; i < total; ++i) ++counts[places_.blocks[i].row / kRowsAlike];
+    std::int64_t so_far = 0;
+    int group = 0;
+    for (int band = 0; band < kBandCount; ++band) {
+      row_end_[band] = places_.height;
+      while (so_far * kBandCount < static_cast<std::int64_t>(total) * (band + 1) &&
+             group < static_cast<int>(counts.size()))
+        so_far += counts[group++];
+      if (band + 1 < kBandCount) row_end_[band] = std::min(group * kRowsAlike, places_.height);
+    }
+  }
+
+  // The next bins that have places, up to what the memory holds. Returns the bin to go on from.
+  int gather_bins(int bin) noexcept {
+    bins_at_hand_ = 0;
+    const int most = std::min(kBinsAtOnceMax, kTurnedCountMax / angle_count_);
+    for (; bin < kBinCount && bins_at_hand_ < most; ++bin) {
+      if (places_.bin_begin[bin] < places_.bin_begin[bin + 1]) bins_[bins_at_hand_++] = bin;
+    }
+    return bin;
+  }
+
+  void turn_bins() noexcept {
+    const Turns turns{memory_.turns.first(static_cast<std::size_t>(angle_count_)),
+                      config_.cost_share_max};
+    const Turner turner(images_, projector_, turns);
+    const auto each = static_cast<std::size_t>(angle_count_);
+    const int chunk_count = std::min(kBandCount, bins_at_hand_);
+    auto turn_some = [&](int chunk) {
+      for (int i = chunk; i < bins_at_hand_; i += chunk_count) {
+        const std::size_t first = static_cast<std::size_t>(i) * each;
+        TurnedTemplate& turned = memory_.turned[i];
+        turned = TurnedTemplate{};
+        turned.angles = memory_.angles.subspan(first, each);
+        if (!memory_.groups.empty()) turned.groups = memory_.groups.subspan(first, each);
+        turner.turn(bins_[i], turned);
+      }
+    };
+    for_each_chunk(executor_, chunk_count, turn_some);
+  }
+
+  void search_bins() noexcept {
+    auto search_band = [&](int band) {
+      const int row_begin = band > 0 ? row_end_[band - 1] : 0;
+      for (int i = 0; i < bins_at_hand_; ++i) {
+        const BinJob job{images_,
+                         places_,
+                         memory_.turned[i],
+                         memory_.bests,
+                         search_block_for(config_.vector_path),
+                         bound_nodes_for(config_.vector_path)};
+        const int begin = first_block(bins_[i], row_begin);
+        const int end = first_block(bins_[i], row_end_[band]);
+        if (begin < end) evaluated_counts_[band] += search_bin(job, begin, end);
+      }
+    };
+    for_each_chunk(executor_, kBandCount, search_band);
+  }
+
+  // The first of the bin's blocks that is not above `row`.
+  [[nodiscard]] int first_block(int bin, int row) const noexcept {
+    const PlaceBlock* const first = places_.blocks.data() + places_.bin_begin[bin];
+    const PlaceBlock* const last = places_.blocks.data() + places_.bin_begin[bin + 1];
+    const PlaceBlock* const found = std::partition_point(
+        first, last, [row](const PlaceBlock& block) { return block.row < row; });
+    return static_cast<int>(found - places_.blocks.data());
+  }
+
   [[nodiscard]] std::int16_t cell_of(int place) const noexcept {
     return static_cast<std::int16_t>(place * images_.lattice.stride_px);
   }
@@ -116,6 +202,7 @@ class Search {
     c.cost_q10 = c.cost_q10 * 1024 / std::max(1, cost_max(images_, projected));
   }
 
+  Executor& executor_;
   const SearchImages& images_;
   const TiltField& field_;
   const Places& places_;
@@ -127,7 +214,10 @@ class Search {
   int angle_count_;
   Projector projector_;
   SearchMemory memory_;
-  std::int64_t evaluated_count_ = 0;
+  std::array<int, kBandCount> row_end_{};
+  std::array<std::int64_t, kBandCount> evaluated_counts_{};
+  std::array<int, kBinsAtOnceMax> bins_{};
+  int bins_at_hand_ = 0;
 };
 
 bool is_valid(const GridSearchConfig& config) noexcept {
@@ -137,7 +227,7 @@ bool is_valid(const GridSearchConfig& config) noexcept {
 
 }  // namespace
 
-void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
+void reserve_search_scratch(Arena& arena, const rectify::Grid& fine, bool with_nodes) noexcept {
   const rectify::Grid coarse = image::halved(fine);
   const Lattice widest = make_lattice(coarse.width_px, coarse.height_px, 1, 1);
   const std::size_t place_count =
@@ -150,7 +240,8 @@ void reserve_search_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
     const ArenaScope scope(arena);
     reserve_tilt_scratch(arena, coarse.width_px);
   }
-  (void)take_search_memory(arena, place_count, kAngleCountMax);
+  (void)take_search_memory(arena, place_count, static_cast<std::size_t>(coarse.height_px),
+                           kAngleCountMax, with_nodes);
 }
 
 double angle_range_rad(const model::Symmetry& symmetry, const model::Anchor& anchor) noexcept {
@@ -169,7 +260,8 @@ int angle_count(double angle_range_rad, double angle_step_rad) noexcept {
 Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField& field,
                                      const Places& places, const model::Template& part,
                                      int anchor_index, const GridSearchConfig& config,
-                                     Arena& scratch, std::span<Candidate> candidates) noexcept {
+                                     Arena& scratch, std::span<Candidate> candidates,
+                                     Executor& executor) noexcept {
   if (anchor_index < 0 || anchor_index >= part.anchor_count || !is_valid(config)) {
     return Status::kInvalidArgument;
   }
@@ -179,7 +271,7 @@ Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField
     return Status::kShapeMismatch;
   }
   const ArenaScope scope(scratch);
-  Search search(images, field, places, part, anchor_index, config);
+  Search search(images, field, places, part, anchor_index, config, executor);
   if (!search.take_memory(scratch)) return Status::kOutOfMemory;
   search.evaluate_all();
   GridSearchResult result;

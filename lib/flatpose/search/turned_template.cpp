@@ -18,13 +18,6 @@ int group_size(const NodeImages& nodes, double reach_px, int angle_count, int mo
 
 }  // namespace
 
-TurnedTemplate take_turned_template(Arena& arena) noexcept {
-  TurnedTemplate turned;
-  turned.angles = arena.take<ShiftedTemplate>(kAngleCountMax);
-  turned.groups = arena.take<GroupTemplate>(kAngleCountMax);
-  return turned;
-}
-
 Turner::Turner(const SearchImages& images, const Projector& projector, const Turns& turns) noexcept
     : images_(images),
       projector_(projector),
@@ -87,7 +80,7 @@ void Turner::group(std::span<const ProjectedTemplate> angles, GroupTemplate& out
     ShiftedPoint& to = out.contour[out.contour_count++];
     to.offset_bytes = (images_.config.use_directions ? low.octant : 0) * image_bytes + shift;
     to.second_offset_bytes = NodeImages::kHeightImage * image_bytes + shift;
-    to.rise_unit = bounded_rise(low.rise_unit);
+    to.rise_row_bytes = rise_row_bytes(low.rise_unit);
   }
 }
 

@@ -18,9 +18,6 @@ struct TurnedTemplate {
   std::uint8_t edge_limit = 0;  ///< Edge sums from here on cost as much as the cut-off.
 };
 
-/// Takes memory for as many angles as there may be.
-[[nodiscard]] TurnedTemplate take_turned_template(Arena& arena) noexcept;
-
 struct Turns {
   std::span<const Rotation> of_angle;
   double cost_share_max = 1.0;
@@ -32,7 +29,7 @@ class Turner {
   /// All it is given must outlive it.
   Turner(const SearchImages& images, const Projector& projector, const Turns& turns) noexcept;
 
-  /// Writes what `out` has memory for.
+  /// `out` brings memory for every angle and, where there are nodes, for as many groups.
   void turn(int bin, TurnedTemplate& out) const noexcept;
   [[nodiscard]] int group_size() const noexcept { return group_size_; }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "tests/lib/search/made_ground.hpp"
 #include "tests/lib/search/slow_search.hpp"
@@ -120,6 +121,94 @@ TEST(GridSearch, GivesTheSameBitsOnEveryVectorPathAndTwice) {
           }
         }
       });
+}
+
+/// The last chunk first.
+class Backwards final : public Executor {
+ public:
+  void parallel_for(int chunk_count, Task task, void* context) noexcept override {
+    for (int i = chunk_count - 1; i >= 0; --i) task(context, i);
+  }
+};
+
+/// A thread for every chunk.
+class ThreadEach final : public Executor {
+ public:
+  void parallel_for(int chunk_count, Task task, void* context) noexcept override {
+    std::vector<std::thread> threads;
+    for (int i = 0; i < chunk_count; ++i) threads.emplace_back(task, context, i);
+    for (std::thread& thread : threads) thread.join();
+  }
+};
+
+TEST(GridSearch, GivesTheSameBitsWhoeverRunsItsChunks) {
+  Backwards backwards;
+  ThreadEach thread_each;
+  over_random_grounds(
+      10, 0.6, 16,
+      [&](const MadeGround& ground, const model::Template& part, const GridSearchConfig& config) {
+        const Found first = ground.run(part, config);
+        for (Executor* executor :
+             {static_cast<Executor*>(&backwards), static_cast<Executor*>(&thread_each)}) {
+          const Found again = ground.run(part, config, 2000, *executor);
+          expect_same(again.candidates, first.candidates);
+          EXPECT_EQ(again.result.evaluated_count, first.result.evaluated_count);
+        }
+      });
+}
+
+/// Bare ground with an edge here and there, as scans are: what bounds are good for.
+void strew_edges(std::mt19937& random, MadeGround& ground) {
+  MadeImages& made = ground.made;
+  ground.lay_plane(uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2));
+  for (auto& channel : made.edge) {
+    {
+      const int at_x = integer(random, 0, made.width() - 1);
+      const int at_y = integer(random, 0, made.height_px() - 1);
+      made.for_each([&](int x, int y) {
+        const int cost = 3 * std::max(std::abs(x - at_x), std::abs(y - at_y));
+        channel(x, y) = static_cast<std::uint8_t>(std::min<int>(channel(x, y), cost));
+      });
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    made.height(integer(random, 0, made.width() - 1), integer(random, 0, made.height_px() - 1)) =
+        kHeightUnitMax;
+  }
+  made.spread_all();
+  ground.collect();
+}
+
+TEST(GridSearch, IsTheSameWhereBoundsSpareMostOfIt) {
+  std::mt19937 random(11);
+  std::int64_t all = 0, looked_at = 0, found_count = 0;
+  for (int trial = 0; trial < 18; ++trial) {
+    SearchImagesConfig images{1 + trial % 3, 14};
+    images.node_side = trial / 3 % 2 == 0 ? 2 : 4;
+    images.node_slack = images.stride_px == 1 ? trial / 6 % 3 : 0;
+    images.use_directions = trial % 5 != 0;
+    MadeGround ground(integer(random, 150, 300), integer(random, 12, 30), images);
+    strew_edges(random, ground);
+    const auto part = random_part(random, 8.0);
+    GridSearchConfig config;
+    config.score = {integer(random, 10, 16), integer(random, 0, 4)};
+    config.angle_step_rad = images.node_slack > 0 ? 0.1 : 0.5;
+    config.cost_share_max = uniform(random, 0.4, 0.7);
+    const SlowSearch slow(ground.made.images, ground.field.field, ground.places.places, *part,
+                          config);
+    for (const VectorPath path : vector_paths()) {
+      config.vector_path = path;
+      const Found found = ground.run(*part, config);
+      expect_same(found.candidates, slow.candidates());
+      all += found.result.hypothesis_count;
+      looked_at += found.result.evaluated_count;
+      found_count += found.result.candidate_count;
+    }
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_LT(looked_at, all * 2 / 3) << "else this tests little";
+  EXPECT_GT(looked_at, all / 100);
+  EXPECT_GT(found_count, 100);
 }
 
 }  // namespace

@@ -26,12 +26,12 @@ struct Found {
 };
 
 /// The scratch that the search says it takes on a coarse level of this size.
-inline std::size_t scratch_bytes(const rectify::Grid& coarse) {
+inline std::size_t scratch_bytes(const rectify::Grid& coarse, bool with_nodes = false) {
   rectify::Grid fine = coarse;
   fine.width_px *= 2;
   fine.height_px *= 2;
   Arena measuring = Arena::measuring();
-  reserve_search_scratch(measuring, fine);
+  reserve_search_scratch(measuring, fine, with_nodes);
   return measuring.required_bytes();
 }
 
@@ -61,12 +61,13 @@ struct MadeGround {
     });
   }
   [[nodiscard]] Found run(const model::Template& part, const GridSearchConfig& config,
-                          std::size_t capacity = 2000) const {
+                          std::size_t capacity = 2000, Executor& executor = callers_thread) const {
     Found found;
     found.candidates.resize(capacity);
-    Memory scratch(scratch_bytes(made.images.grid));
-    const Result<GridSearchResult> result = grid_search(
-        made.images, field.field, places.places, part, 0, config, scratch.arena, found.candidates);
+    Memory scratch(scratch_bytes(made.images.grid, made.images.nodes.side > 0));
+    const Result<GridSearchResult> result =
+        grid_search(made.images, field.field, places.places, part, 0, config, scratch.arena,
+                    found.candidates, executor);
     EXPECT_EQ(scratch.arena.used_bytes(), 0U) << "the scratch is given back";
     found.status = result.status();
     if (result) found.result = *result;
