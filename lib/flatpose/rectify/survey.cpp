@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -44,6 +45,27 @@ constexpr int kSampleSideMax = 2 * kSampleSide + 1;            // side / (side /
 constexpr double kLowerHalfMean_sigma = 0.32465;               // of a normal distribution
 constexpr double kSecondDifferenceSigmas = 2.449489742783178;  // sqrt(1 + 4 + 1)
 
+/// The value that `n` others come before in order; none is negative or NaN, so their bits are in
+/// the order of the values. They are counted by their upper, middle and lower bits in turn.
+float nth_smallest(std::span<const float> values, std::size_t n) noexcept {
+  constexpr int kDigitBits = 11;
+  constexpr std::uint32_t kDigits = 1U << kDigitBits;
+  std::array<std::uint32_t, kDigits> counts;
+  std::uint32_t found = 0, known = 0;  // the bits found, and which they are
+  for (const int shift : {21, 10, 0}) {
+    counts.fill(0);
+    for (const float value : values) {
+      const auto bits = std::bit_cast<std::uint32_t>(value);
+      if ((bits & known) == found) ++counts[bits >> shift & (kDigits - 1)];
+    }
+    std::uint32_t digit = 0;
+    while (n >= counts[digit]) n -= counts[digit++];
+    found |= digit << shift;
+    known |= (kDigits - 1) << shift;
+  }
+  return std::bit_cast<float>(found);
+}
+
 /// Values from the rows sampled, each row's in a place of its own: rows may be sampled in any
 /// order.
 class Sample {
@@ -69,25 +91,30 @@ class Sample {
     }
   }
   /// 0 for none.
-  [[nodiscard]] double median() noexcept {
-    if (count_ == 0) return 0.0;
-    float* const middle = values_.data() + count_ / 2;
-    std::nth_element(values_.data(), middle, values_.data() + count_);
-    return static_cast<double>(*middle);
+  [[nodiscard]] double median() const noexcept {
+    return count_ == 0 ? 0.0 : static_cast<double>(nth_smallest(values_.first(count_), count_ / 2));
   }
 
   /// Mean of the smaller half; 0 for none.
-  [[nodiscard]] double lower_half_mean() noexcept {
+  [[nodiscard]] double lower_half_mean() const noexcept {
     if (count_ == 0) return 0.0;
     const std::size_t half = (count_ + 1) / 2;
-    std::nth_element(values_.data(), values_.data() + half - 1, values_.data() + count_);
-    // The sum must not depend on how nth_element left the order: count in whole nanometres.
-    constexpr double kSteps_per_mm = 1e6;
-    constexpr double kMax_mm = 1e6;
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < half; ++i)
-      sum += static_cast<std::int64_t>(std::min(static_cast<double>(values_[i]), kMax_mm) *
+    const float middle = nth_smallest(values_.first(count_), half - 1);
+    // The sum must not depend on the order of the values: count in whole nanometres.
+    static constexpr double kSteps_per_mm = 1e6;
+    static constexpr double kMax_mm = 1e6;
+    const auto steps = [](float value) {
+      return static_cast<std::int64_t>(std::min(static_cast<double>(value), kMax_mm) *
                                        kSteps_per_mm);
+    };
+    std::int64_t sum = 0;
+    std::size_t below_count = 0;
+    for (const float value : values_.first(count_)) {
+      const bool is_below = value < middle;
+      sum += is_below ? steps(value) : 0;
+      below_count += is_below ? 1 : 0;
+    }
+    sum += static_cast<std::int64_t>(half - below_count) * steps(middle);
     return static_cast<double>(sum) / kSteps_per_mm / static_cast<double>(half);
   }
 
@@ -112,10 +139,10 @@ double distance_xy(const Vec3& a, const Vec3& b) noexcept {
 }
 
 /// The step from pixel p to the next along a direction, and the bend there.
-void sample_along(const RangeImageView& scan, const Pose& work_T_scan, int column, int row,
-                  int right, int down, int sampled_row, Sample& step, Sample& bend) noexcept {
+void sample_along(const RangeImageView& scan, const Pose& work_T_scan, const Vec3& p, int column,
+                  int row, int right, int down, int sampled_row, Sample& step,
+                  Sample& bend) noexcept {
   if (!scan.contains(column + right, row + down)) return;
-  const Vec3 p = work_T_scan * scan(column, row);
   const Vec3 next = work_T_scan * scan(column + right, row + down);
   step.add(sampled_row, distance_xy(p, next));
   if (!scan.contains(column - right, row - down)) return;
@@ -130,8 +157,9 @@ void sample_row(const RangeImageView& scan, const Pose& work_T_scan, int r, Samp
   if (r < 0 || r % row_step != 0) return;
   // Sampled columns move on from row to row, lest a pattern in the columns be all there is.
   for (int c = r / row_step % column_step; c < scan.width_px; c += column_step) {
-    sample_along(scan, work_T_scan, c, r, 1, 0, r / row_step, out.along_row, out.bend_along_row);
-    sample_along(scan, work_T_scan, c, r, 0, 1, r / row_step, out.along_column,
+    const Vec3 p = work_T_scan * scan(c, r);
+    sample_along(scan, work_T_scan, p, c, r, 1, 0, r / row_step, out.along_row, out.bend_along_row);
+    sample_along(scan, work_T_scan, p, c, r, 0, 1, r / row_step, out.along_column,
                  out.bend_along_column);
   }
 }
