@@ -121,6 +121,7 @@ class Painter {
         reach_(config.reach != nullptr && config.reach->scan_height_px == scan.height_px
                    ? config.reach
                    : nullptr),
+        group_rows_(reach_ != nullptr ? reach_->rows_per_group() : 1),
         to_grid_(work_T_scan, out.grid),
         limits_(edge_limits(config, out.grid.cell_mm)),
         kernels_(row_kernels(config.vector_path)),
@@ -141,8 +142,7 @@ class Painter {
  private:
   [[nodiscard]] int strip_count() const noexcept { return thin_.height_px - 1; }
 
-  /// Rows or columns, whichever fewer strips reach more than one of; the whole map at once when
-  /// most reach several.
+  /// Rows or columns, if few strips reach more than one part; else the whole map at once.
   [[nodiscard]] Parts choose_parts() const noexcept {
     constexpr int kBlock_px = 16;  // cells in a cache line
     const Grid& grid = out_.grid;
@@ -150,9 +150,9 @@ class Painter {
     if (reach_ == nullptr) return whole_map;
     const Parts by_rows{true, RowChunks(grid.height_px, kBlock_px)};
     const Parts by_columns{false, RowChunks(grid.width_px, kBlock_px)};
-    const int row_visits = visit_count(by_rows), column_visits = visit_count(by_columns);
-    if (2 * std::min(row_visits, column_visits) > 3 * strip_count()) return whole_map;
-    return row_visits <= column_visits ? by_rows : by_columns;
+    const auto is_worth_it = [this](int visits) { return 2 * visits <= 3 * strip_count(); };
+    if (is_worth_it(visit_count(by_rows))) return by_rows;
+    return is_worth_it(visit_count(by_columns)) ? by_columns : whole_map;
   }
   [[nodiscard]] int visit_count(const Parts& parts) const noexcept {
     int count = 0;
@@ -167,8 +167,10 @@ class Painter {
   [[nodiscard]] bool reaches(int strip, const CellWindow& window) const noexcept {
     if (reach_ == nullptr) return true;
     const Grid& grid = out_.grid;
-    const ScanReach::Box& a = reach_->box_of_row(strip * step_px_);
-    const ScanReach::Box& b = reach_->box_of_row((strip + 1) * step_px_);
+    const int row = strip * step_px_;
+    const ScanReach::Box& a = reach_->boxes[static_cast<std::size_t>(row / group_rows_)];
+    const ScanReach::Box& b =
+        reach_->boxes[static_cast<std::size_t>((row + step_px_) / group_rows_)];
     constexpr double kSnapped_px = 1e-3;  // half a subcell, and more
     const double slack_mm = kSnapped_px * grid.cell_mm + static_cast<double>(reach_->rounding_mm);
     const auto meets = [slack_mm](float low_mm, float high_mm, double begin_mm, double end_mm) {
@@ -218,6 +220,7 @@ class Painter {
   RangeImageView thin_;
   int step_px_;
   const ScanReach* reach_;
+  int group_rows_;
   ScanToGrid to_grid_;
   EdgeLimits limits_;
   const RowKernels& kernels_;

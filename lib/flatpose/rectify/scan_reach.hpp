@@ -25,9 +25,6 @@ struct ScanReach {
   [[nodiscard]] int rows_per_group() const noexcept {
     return (scan_height_px + kGroupCountMax - 1) / kGroupCountMax;
   }
-  [[nodiscard]] const Box& box_of_row(int row) const noexcept {
-    return boxes[static_cast<std::size_t>(row / rows_per_group())];
-  }
 };
 
 }  // namespace flatpose::rectify
