@@ -63,6 +63,63 @@ void BlockSums::run(search::SearchBlock form) {
   }
 }
 
+void BlockSums::turn_for_pruning() {
+  const model::Template& part = *ground_.part;
+  const double range_rad = search::angle_range_rad(part.symmetry, part.anchors[0]);
+  std::vector<Rotation> rotations;
+  for (int i = 0; i < angle_count_; ++i)
+    rotations.push_back(rotation_about_z(range_rad * i / angle_count_));
+  const search::Projector projector(part, part.anchors[0], ground_.images, ground_.search.score,
+                                    !ground_.images.config.use_height);
+  const search::Turns turns{
+      rotations, ground_.search.cost_share_max,
+      static_cast<std::int32_t>(ground_.search.first_share * search::kCostMax)};
+  const search::Turner turner(ground_.images, projector, turns);
+  const auto each = static_cast<std::size_t>(angle_count_);
+  pruned_angles_.resize(bins_.size() * each);
+  pruned_groups_.resize(bins_.size() * each);
+  for (std::size_t i = 0; i < bins_.size(); ++i) {
+    search::TurnedTemplate& turned = pruned_.emplace_back();
+    turned.angles = {pruned_angles_.data() + i * each, each};
+    turned.groups = {pruned_groups_.data() + i * each, each};
+    turner.turn(ground_.places.blocks[static_cast<std::size_t>(bins_[i].begin)].bin, turned);
+  }
+}
+
+search::SectorBests BlockSums::bests() {
+  search::SectorBests bests;
+  for (std::size_t sector = 0; sector < search::kSectorCount; ++sector) {
+    bests.cost[sector] = best_cost_[sector];
+    bests.angle[sector] = best_angle_[sector];
+  }
+  return bests;
+}
+
+void BlockSums::prune(VectorPath path) {
+  if (pruned_.empty()) turn_for_pruning();
+  for (auto& cost : best_cost_) std::fill(cost.begin(), cost.end(), search::kCostMax);
+  for (auto& angle : best_angle_) std::fill(angle.begin(), angle.end(), search::kNoAngle);
+  const search::SectorBests all = bests();
+  for (std::size_t i = 0; i < bins_.size(); ++i) {
+    const search::BinJob job{ground_.images,
+                             ground_.places,
+                             pruned_[i],
+                             all,
+                             search::search_block_for(path),
+                             search::bound_nodes_for(path)};
+    search::search_bin(job, bins_[i].begin, bins_[i].end);
+  }
+}
+
+std::vector<search::Candidate> BlockSums::candidates(std::size_t count) {
+  std::vector<search::Candidate> list(count);
+  std::vector<std::uint8_t> lows(ground_.places.bin.size() / search::kBlockSize *
+                                 search::kSectorCount);
+  list.resize(static_cast<std::size_t>(
+      search::list_minima(ground_.places, bests(), angle_count_, lows, list)));
+  return list;
+}
+
 std::uint64_t BlockSums::digest() const {
   Fnv1a64 fnv;
   for (const auto& cost : best_cost_) fnv.add(std::as_bytes(std::span(cost)));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/speed/ground.hpp"
-#include "flatpose/search/block_search.hpp"
+#include "flatpose/search/bin_search.hpp"
 
 namespace flatpose::bench {
 
@@ -17,6 +17,12 @@ class BlockSums {
 
   /// Fills the best cost and angle of every place. The same bits for every exact form.
   void run(search::SearchBlock form);
+
+  /// As run(), but what cannot enter the list of candidates is left out: by the threshold of the
+  /// search's first round and, where the ground has nodes, by their bounds.
+  void prune(VectorPath path);
+  /// Fills the list from the costs of the last run() or prune().
+  [[nodiscard]] std::vector<search::Candidate> candidates(std::size_t count);
 
   /// Over the costs of all places and sectors.
   [[nodiscard]] std::uint64_t digest() const;
@@ -33,6 +39,8 @@ class BlockSums {
   };
   [[nodiscard]] std::size_t block_count() const;
   void turn_template(int bin_index, Bin& bin);
+  void turn_for_pruning();
+  [[nodiscard]] search::SectorBests bests();
 
   const Ground& ground_;
   int angle_count_;
@@ -40,6 +48,9 @@ class BlockSums {
   std::vector<search::ShiftedTemplate> angles_;  // by bin
   std::array<std::vector<std::uint8_t>, search::kSectorCount> best_cost_;
   std::array<std::vector<std::uint8_t>, search::kSectorCount> best_angle_;
+  std::vector<search::ShiftedTemplate> pruned_angles_;  // made when first asked for
+  std::vector<search::GroupTemplate> pruned_groups_;
+  std::vector<search::TurnedTemplate> pruned_;  // by bin
 };
 
 }  // namespace flatpose::bench

@@ -113,6 +113,7 @@ int reach_px(const model::Template& part) {
 search::GridSearchConfig search_config(const GroundConfig& config,
                                        const search::GridSearchConfig& usual) {
   search::GridSearchConfig search = usual;
+  if (config.first_share > 0.0) search.first_share = config.first_share;
   search.score.contour_count = config.point_count / 2;
   search.score.surface_count = config.point_count - config.point_count / 2;
   // A little more than the step itself, so that rounding makes no angle more.
@@ -125,18 +126,18 @@ void build(const Field& field, Ground& ground) {
   const GroundConfig& config = ground.config;
   const rectify::Grid& fine = field.scene.map.grid;
   const auto lay_out = [&](Arena& arena) {
-    ground.images = search::take_search_images(arena, fine);
+    ground.images = search::take_search_images(arena, fine, config.node_side > 0);
     const int w = ground.images.grid.width_px;
     const int h = ground.images.grid.height_px;
     ground.field = search::take_tilt_field(arena, w, h);
     ground.places = search::take_places(arena, w, h);
     for (int i = 0; i < 8; ++i) (void)arena.take_image<float>(w, h);  // for keep_for_thesis
-    search::reserve_search_scratch(arena, fine);
+    search::reserve_search_scratch(arena, fine, config.node_side > 0);
   };
   Arena measuring = Arena::measuring();
   lay_out(measuring);
   ground.scratch = take_memory(ground, measuring.required_bytes());
-  ground.images = search::take_search_images(ground.scratch, fine);
+  ground.images = search::take_search_images(ground.scratch, fine, config.node_side > 0);
   const int side = ground.field_px = ground.images.grid.width_px;
   ground.field = search::take_tilt_field(ground.scratch, side, side);
   ground.places = search::take_places(ground.scratch, side, side);
@@ -158,6 +159,8 @@ void build(const Field& field, Ground& ground) {
   images.reach_px = reach_px(*ground.part);
   images.use_height = config.use_height;
   images.use_directions = config.use_directions;
+  images.node_side = config.node_side;
+  images.node_slack = config.node_slack;
   check(search::build_search_images(field.scene, images, ground.places.range, ground.scratch,
                                     ground.images),
         "images");

@@ -28,6 +28,9 @@ struct GroundConfig {
   bool is_level = false;       ///< All places have one tilt: the block loop at its best.
   bool use_height = true;      ///< Off: normals in place of heights, as the thesis.
   bool use_directions = true;  ///< Off: edges in one image, as the thesis.
+  int node_side = 0;           ///< As search::SearchImagesConfig has it.
+  int node_slack = 0;
+  double first_share = 0.0;  ///< As search::GridSearchConfig has it; 0: its default.
 };
 
 /// All that grid_search() asks for. Neither moved nor copied: views point into it.

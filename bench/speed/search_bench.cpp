@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -43,6 +44,27 @@ class Input {
   [[nodiscard]] std::uint64_t digest(search::SearchBlock form) {
     sums_.run(form);
     return sums_.digest();
+  }
+  void prune(VectorPath path) {
+    sums_.prune(path);
+    benchmark::ClobberMemory();
+  }
+  /// That pruning leaves the list of candidates as it is, and that the list is full.
+  void check_pruning(VectorPath path) {
+    sums_.prune(path);
+    const auto pruned = sums_.candidates(candidates_.size());
+    sums_.run(search::search_block_for(path));
+    const auto whole = sums_.candidates(candidates_.size());
+    const auto is_same = [](const search::Candidate& a, const search::Candidate& b) {
+      return a.cost_q10 == b.cost_q10 && a.row == b.row && a.column == b.column &&
+             a.angle_index == b.angle_index;
+    };
+    if (pruned.size() != candidates_.size())
+      throw std::runtime_error(
+          "the first round's list is not full: " + std::to_string(pruned.size()) +
+          ", the last should cost " + std::to_string(whole.back().cost_q10));
+    if (!std::equal(pruned.begin(), pruned.end(), whole.begin(), whole.end(), is_same))
+      throw std::runtime_error("pruning changes the candidates");
   }
   /// Touches the pages of the scratch memory, so that no contender pays for them.
   void warm() {
@@ -117,6 +139,9 @@ std::vector<Row> pruned() {
     config.angle_count = angles;
     config.point_count = 28;
     config.is_gated = true;
+    config.node_side = 2;
+    config.node_slack = angles > 360 ? 1 : 0;  // angles that move no point by a place
+    config.first_share = 0.56;
     rows.push_back({"medium_" + std::to_string(angles), config, false});
   }
   return rows;
@@ -169,6 +194,11 @@ void add_ours(const std::string& group, const Row& row, const NamedPath& path, i
   add(
       group, row, "search_" + path.name, count, [=](Input& input) { input.search(path.path); },
       [](Input& input) { input.warm(); });
+  if (row.config.node_side > 0) {
+    add(
+        group, row, "pruned_" + path.name, count, [=](Input& input) { input.prune(path.path); },
+        [=](Input& input) { input.check_pruning(path.path); });
+  }
   if (whole == nullptr) return;
   add(
       group, row, "whole_" + path.name, count, [=](Input& input) { input.sum(whole); },

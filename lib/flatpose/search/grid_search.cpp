@@ -70,25 +70,22 @@ class Search {
                                  static_cast<std::size_t>(places_.height), angle_count_,
                                  images_.nodes.side > 0);
     if (scratch.failed()) return false;
-    for (const auto& cost : memory_.bests.cost) std::fill(cost.begin(), cost.end(), kCostMax);
-    for (const auto& angle : memory_.bests.angle) std::fill(angle.begin(), angle.end(), kNoAngle);
     for (int angle = 0; angle < angle_count_; ++angle)
       memory_.turns[angle] = rotation_about_z(angle_rad(angle));
     return true;
   }
 
-  void evaluate_all() noexcept {
-    share_out_rows();
-    for (int bin = 0; bin < kBinCount;) {
-      bin = gather_bins(bin);
-      turn_bins();
-      search_bins();
+  /// Local minima among neighbours in place and angle, best first, at most as many as `candidates`
+  /// holds. A threshold takes none away that costs no more, nor makes one: it is rivals that cost
+  /// no more which decide whether a place is a minimum. So a full list is the list.
+  int run(std::span<Candidate> candidates) noexcept {
+    const auto first = static_cast<std::int32_t>(config_.first_share * kCostMax);
+    int count = 0;
+    for (const std::int32_t threshold : {std::min(first, kCostMax), kCostMax}) {
+      evaluate_all(threshold);
+      count = list_minima(places_, memory_.bests, angle_count_, memory_.block_lows, candidates);
+      if (!is_limited_ || count == static_cast<int>(candidates.size())) break;
     }
-  }
-
-  int pick(std::span<Candidate> candidates) noexcept {
-    const int count =
-        list_minima(places_, memory_.bests, angle_count_, memory_.block_lows, candidates);
     for (Candidate& c : candidates.first(static_cast<std::size_t>(count))) finish(c);
     return count;
   }
@@ -103,6 +100,19 @@ class Search {
   }
 
  private:
+  void evaluate_all(std::int32_t threshold) noexcept {
+    for (const auto& cost : memory_.bests.cost) std::fill(cost.begin(), cost.end(), kCostMax);
+    for (const auto& angle : memory_.bests.angle) std::fill(angle.begin(), angle.end(), kNoAngle);
+    share_out_rows();
+    is_limited_ = false;
+    evaluated_counts_.fill(0);
+    for (int bin = 0; bin < kBinCount;) {
+      bin = gather_bins(bin);
+      turn_bins(threshold);
+      search_bins();
+    }
+  }
+
   // As many blocks in each band, and rows of nodes undivided.
   void share_out_rows() noexcept {
     constexpr int kRowsAlike = kNodeSideMax;
@@ -131,9 +141,9 @@ class Search {
     return bin;
   }
 
-  void turn_bins() noexcept {
+  void turn_bins(std::int32_t threshold) noexcept {
     const Turns turns{memory_.turns.first(static_cast<std::size_t>(angle_count_)),
-                      config_.cost_share_max};
+                      config_.cost_share_max, threshold};
     const Turner turner(images_, projector_, turns);
     const auto each = static_cast<std::size_t>(angle_count_);
     const int chunk_count = std::min(kBandCount, bins_at_hand_);
@@ -148,6 +158,7 @@ class Search {
       }
     };
     for_each_chunk(executor_, chunk_count, turn_some);
+    for (int i = 0; i < bins_at_hand_; ++i) is_limited_ |= memory_.turned[i].is_limited;
   }
 
   void search_bins() noexcept {
@@ -218,11 +229,12 @@ class Search {
   std::array<std::int64_t, kBandCount> evaluated_counts_{};
   std::array<int, kBinsAtOnceMax> bins_{};
   int bins_at_hand_ = 0;
+  bool is_limited_ = false;  // whether the threshold left out anything that may count
 };
 
 bool is_valid(const GridSearchConfig& config) noexcept {
   return config.angle_step_rad > 0.0 && config.cost_share_max >= 0.0 &&
-         config.cost_share_max <= 1.0;
+         config.cost_share_max <= 1.0 && config.first_share >= 0.0;
 }
 
 }  // namespace
@@ -273,9 +285,8 @@ Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField
   const ArenaScope scope(scratch);
   Search search(images, field, places, part, anchor_index, config, executor);
   if (!search.take_memory(scratch)) return Status::kOutOfMemory;
-  search.evaluate_all();
   GridSearchResult result;
-  result.candidate_count = search.pick(candidates);
+  result.candidate_count = search.run(candidates);
   result.hypothesis_count = search.hypothesis_count();
   result.evaluated_count = search.evaluated_count();
   return result;

@@ -49,6 +49,7 @@ void Turner::turn(int bin, TurnedTemplate& out) const noexcept {
   out.rises = rise_range(out.angles);
   const std::int32_t share = static_cast<std::int32_t>(worst * turns_.cost_share_max);
   const std::int32_t cutoff = std::min({share, turns_.threshold + 1, kCostMax});
+  out.is_limited = cutoff < std::min(share, kCostMax);
   const std::int32_t factor_q8 = angle_count > 0 ? out.angles[0].edge_factor_q8 : 256;
   out.cutoff = static_cast<std::uint8_t>(cutoff);
   out.edge_limit = static_cast<std::uint8_t>((cutoff * 256 + factor_q8 - 1) / factor_q8);

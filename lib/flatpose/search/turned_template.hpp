@@ -15,6 +15,7 @@ struct TurnedTemplate {
   int group_size = 1;
   RiseRange rises;
   std::uint8_t cutoff = 0;      ///< Only costs below it count.
+  bool is_limited = false;      ///< By the threshold, not the share.
   std::uint8_t edge_limit = 0;  ///< Edge sums from here on cost as much as the cut-off.
 };
 

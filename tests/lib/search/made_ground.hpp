@@ -81,6 +81,7 @@ inline GridSearchConfig made_config(std::mt19937& random) {
   config.score = {integer(random, 1, 10), integer(random, 0, 6)};
   config.angle_step_rad = uniform(random, 0.2, 0.9);
   config.cost_share_max = random() % 2 == 0 ? 1.0 : uniform(random, 0.3, 0.9);
+  config.first_share = uniform(random, 0.1, 1.2);
   return config;
 }
 
