@@ -63,7 +63,7 @@ void BlockSums::run(search::SearchBlock form) {
   }
 }
 
-void BlockSums::turn_for_pruning() {
+void BlockSums::add_round() {
   const model::Template& part = *ground_.part;
   const double range_rad = search::angle_range_rad(part.symmetry, part.anchors[0]);
   std::vector<Rotation> rotations;
@@ -71,17 +71,18 @@ void BlockSums::turn_for_pruning() {
     rotations.push_back(rotation_about_z(range_rad * i / angle_count_));
   const search::Projector projector(part, part.anchors[0], ground_.images, ground_.search.score,
                                     !ground_.images.config.use_height);
-  const search::Turns turns{
-      rotations, ground_.search.cost_share_max,
-      static_cast<std::int32_t>(ground_.search.first_share * search::kCostMax)};
+  const double share = rounds_.empty() ? ground_.search.first_share : 1.0;
+  const search::Turns turns{rotations, ground_.search.cost_share_max,
+                            static_cast<std::int32_t>(share * search::kCostMax)};
+  Round& round = rounds_.emplace_back();
   const search::Turner turner(ground_.images, projector, turns);
   const auto each = static_cast<std::size_t>(angle_count_);
-  pruned_angles_.resize(bins_.size() * each);
-  pruned_groups_.resize(bins_.size() * each);
+  round.angles.resize(bins_.size() * each);
+  round.groups.resize(bins_.size() * each);
   for (std::size_t i = 0; i < bins_.size(); ++i) {
-    search::TurnedTemplate& turned = pruned_.emplace_back();
-    turned.angles = {pruned_angles_.data() + i * each, each};
-    turned.groups = {pruned_groups_.data() + i * each, each};
+    search::TurnedTemplate& turned = round.turned.emplace_back();
+    turned.angles = {round.angles.data() + i * each, each};
+    turned.groups = {round.groups.data() + i * each, each};
     turner.turn(ground_.places.blocks[static_cast<std::size_t>(bins_[i].begin)].bin, turned);
   }
 }
@@ -96,18 +97,20 @@ search::SectorBests BlockSums::bests() {
 }
 
 void BlockSums::prune(VectorPath path) {
-  if (pruned_.empty()) turn_for_pruning();
-  for (auto& cost : best_cost_) std::fill(cost.begin(), cost.end(), search::kCostMax);
-  for (auto& angle : best_angle_) std::fill(angle.begin(), angle.end(), search::kNoAngle);
+  if (rounds_.empty()) add_round();
   const search::SectorBests all = bests();
-  for (std::size_t i = 0; i < bins_.size(); ++i) {
-    const search::BinJob job{ground_.images,
-                             ground_.places,
-                             pruned_[i],
-                             all,
-                             search::search_block_for(path),
-                             search::bound_nodes_for(path)};
-    search::search_bin(job, bins_[i].begin, bins_[i].end);
+  for (const Round& round : rounds_) {
+    for (auto& cost : best_cost_) std::fill(cost.begin(), cost.end(), search::kCostMax);
+    for (auto& angle : best_angle_) std::fill(angle.begin(), angle.end(), search::kNoAngle);
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+      const search::BinJob job{ground_.images,
+                               ground_.places,
+                               round.turned[i],
+                               all,
+                               search::search_block_for(path),
+                               search::bound_nodes_for(path)};
+      search::search_bin(job, bins_[i].begin, bins_[i].end);
+    }
   }
 }
 

@@ -21,6 +21,10 @@ class BlockSums {
   /// As run(), but what cannot enter the list of candidates is left out: by the threshold of the
   /// search's first round and, where the ground has nodes, by their bounds.
   void prune(VectorPath path);
+  [[nodiscard]] int round_count() const { return static_cast<int>(rounds_.size()); }
+  /// One more round: the first at the ground's threshold, the second, for where that is not
+  /// enough, at none.
+  void add_round();
   /// Fills the list from the costs of the last run() or prune().
   [[nodiscard]] std::vector<search::Candidate> candidates(std::size_t count);
 
@@ -39,7 +43,6 @@ class BlockSums {
   };
   [[nodiscard]] std::size_t block_count() const;
   void turn_template(int bin_index, Bin& bin);
-  void turn_for_pruning();
   [[nodiscard]] search::SectorBests bests();
 
   const Ground& ground_;
@@ -48,9 +51,12 @@ class BlockSums {
   std::vector<search::ShiftedTemplate> angles_;  // by bin
   std::array<std::vector<std::uint8_t>, search::kSectorCount> best_cost_;
   std::array<std::vector<std::uint8_t>, search::kSectorCount> best_angle_;
-  std::vector<search::ShiftedTemplate> pruned_angles_;  // made when first asked for
-  std::vector<search::GroupTemplate> pruned_groups_;
-  std::vector<search::TurnedTemplate> pruned_;  // by bin
+  struct Round {
+    std::vector<search::ShiftedTemplate> angles;
+    std::vector<search::GroupTemplate> groups;
+    std::vector<search::TurnedTemplate> turned;  // by bin
+  };
+  std::vector<Round> rounds_;
 };
 
 }  // namespace flatpose::bench
