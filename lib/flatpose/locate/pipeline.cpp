@@ -131,7 +131,7 @@ class Pipeline {
 
   Status search(int anchor) noexcept {
     // A further anchor is for parts whose first one is covered; in the open they are found.
-    const int spare = anchor == 0 ? 42 : 18;
+    const int spare = 42;
     const auto wanted =
         static_cast<std::size_t>(std::min(kCandidateCountMax, spare + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
@@ -177,7 +177,7 @@ class Pipeline {
       if (!refined[i].is_moved) continue;
       const Pose& pose = refined[i].work_T_object;
       tried_.add(starts[i]);
-      tried_.add(pose);
+      if (refined[i].verification.score >= settings_.score_threshold) tried_.add(pose);
       if (refined[i].is_found && !instances_.is_full() &&
           !instances_.contains(pose, near_mm, part_.radius_mm))
         instances_.add(pose, refined[i].verification);
