@@ -1,6 +1,7 @@
 #include "bench/speed/block_sums.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "flatpose/core/fnv.hpp"
 
@@ -135,14 +136,15 @@ double BlockSums::loaded_bytes(int lane_count) const {
   const bool use_height = ground_.images.config.use_height;
   const int loads =
       score.contour_count * (use_height ? 2 : 1) + score.surface_count * (use_height ? 1 : 2);
-  std::int64_t vector_count = 0;  // a vector without a wanted place is passed over
+  std::int64_t vector_count = 0;  // from the first wanted place to the last
   for (const search::PlaceBlock& block : ground_.places.blocks.first(block_count())) {
-    const auto bin = ground_.places.bin.begin() +
-                     static_cast<std::ptrdiff_t>(ground_.places.index(block.column, block.row));
-    for (int first = 0; first < search::kBlockSize; first += lane_count) {
-      const auto begin = bin + first;
-      vector_count += std::find(begin, begin + lane_count, block.bin) != begin + lane_count ? 1 : 0;
-    }
+    const auto begin = ground_.places.bin.begin() +
+                       static_cast<std::ptrdiff_t>(ground_.places.index(block.column, block.row));
+    const auto end = begin + search::kBlockSize;
+    const auto first = std::find(begin, end, block.bin);
+    const auto last =
+        std::find(std::reverse_iterator(end), std::reverse_iterator(first), block.bin);
+    vector_count += (last.base() - first + lane_count - 1) / lane_count;
   }
   return static_cast<double>(vector_count) * lane_count * angle_count_ * loads;
 }
