@@ -25,7 +25,11 @@ class LandmarkTally {
   void add(int point, const PointVerdict& verdict) noexcept {
     holes_[landmarks_.hole[point]].add(verdict.agreement);
     const double gap_px = landmarks_.telltale_gap_px[point];
-    if (gap_px > 0.0) telltales_.add(verdict.distance_px < 0.5 * gap_px ? 1.0 : 0.0);
+    if (gap_px > 0.0) {
+      telltales_.add(verdict.distance_px < 0.5 * gap_px ? 1.0 : 0.0);
+    } else {
+      common_.add(verdict.distance_px < 0.5 * model::kTelltaleGapMin_px ? 1.0 : 0.0);
+    }
   }
 
   /// A place where the contour would be if the part lay on its face.
@@ -53,8 +57,11 @@ class LandmarkTally {
     constexpr double kAgreementMin = 0.3;
     const int count = landmarks_.telltale_count + landmarks_.mirrored_count;
     if (count < kTelltaleShareMin * contour_count) return true;
+    // Where the contour that both faces have in common is met sharply, so must be what tells.
+    constexpr double kCommonShare = 0.6;
+    const double common = common_.seen_count > 0 ? common_.mean_agreement() : 0.0;
     return telltales_.agreement_sum >= kConfirmedMin &&
-           telltales_.mean_agreement() >= kAgreementMin;
+           telltales_.mean_agreement() >= std::max(kAgreementMin, kCommonShare * common);
   }
 
  private:
@@ -71,6 +78,7 @@ class LandmarkTally {
   const model::Landmarks& landmarks_;
   std::array<Tally, model::kHoleCountMax + 1> holes_{};
   Tally telltales_;
+  Tally common_;  ///< What both faces show, asked as strictly as a telltale may be.
 };
 
 }  // namespace flatpose::locate

@@ -200,7 +200,6 @@ void find_telltales(const Template& part, Landmarks& out) noexcept {
   const MirroredSelf mirrored(part);
   const Placement placement = mirrored.best();
   // Nearer than this, an edge a fraction of a cell off decides.
-  constexpr double kGapMin_px = 1.5;
   const SinCos turn = sin_cos(placement.turn_rad);
   std::array<Placed, kContourPointCountMax> all;
   for (int i = 0; i < part.contour_count; ++i)
@@ -209,13 +208,13 @@ void find_telltales(const Template& part, Landmarks& out) noexcept {
   for (int i = 0; i < part.contour_count; ++i) {
     const ContourPoint& p = part.contour[i];
     const double gap_px = mirrored.gap_px(placed, p);
-    if (gap_px >= kGapMin_px) {
+    if (gap_px >= kTelltaleGapMin_px) {
       out.telltale_gap_px[i] = static_cast<float>(gap_px);
       ++out.telltale_count;
     }
     const Placed& q = placed[i];
     const double mirrored_gap_px = mirrored.gap_of_mirrored_px(q);
-    if (mirrored_gap_px < kGapMin_px || out.mirrored_count == kMirroredCountMax) continue;
+    if (mirrored_gap_px < kTelltaleGapMin_px || out.mirrored_count == kMirroredCountMax) continue;
     ContourPoint& shown = out.mirrored[out.mirrored_count];
     shown = p;
     shown.x_mm = static_cast<float>(q.x_mm);

@@ -77,6 +77,8 @@ enum Weakness : std::uint32_t {
 
 inline constexpr int kHoleCountMax = 16;
 inline constexpr int kMirroredCountMax = 128;
+/// Contours of part and mirrored self that lie nearer than this are not told apart.
+inline constexpr double kTelltaleGapMin_px = 1.5;
 
 /// What tells the part from its look-alikes, read off its contour: see landmarks.hpp.
 struct Landmarks {
