@@ -53,17 +53,20 @@ class LandmarkTally {
   /// little for the cells shows it always.
   [[nodiscard]] bool shows_face(int contour_count) const noexcept {
     constexpr double kTelltaleShareMin = 0.06;
-    // A handful of votes decides nothing where a hundred could be cast.
     constexpr double kConfirmedMin = 2.0;
-    constexpr double kConfirmedShareMin = 0.05;
     constexpr double kAgreementMin = 0.3;
     const int count = landmarks_.telltale_count + landmarks_.mirrored_count;
     if (count < kTelltaleShareMin * contour_count) return true;
     // Where the contour that both faces have in common is met sharply, so must be what tells.
     constexpr double kCommonShare = 0.6;
     const double common = common_.seen_count > 0 ? common_.mean_agreement() : 0.0;
-    return telltales_.agreement_sum >= std::max(kConfirmedMin, kConfirmedShareMin * count) &&
-           telltales_.mean_agreement() >= std::max(kAgreementMin, kCommonShare * common);
+    const double least = std::max(kAgreementMin, kCommonShare * common);
+    // A handful of votes, where a hundred could be cast, decides only when it is clear.
+    constexpr double kFewShare = 0.05;
+    constexpr double kClearMin = 0.6;
+    const bool are_few = telltales_.agreement_sum < kFewShare * count;
+    return telltales_.agreement_sum >= kConfirmedMin &&
+           telltales_.mean_agreement() >= (are_few ? kClearMin : least);
   }
 
  private:
