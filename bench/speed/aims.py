@@ -6,7 +6,6 @@ from figures import PATHS, middle
 
 PADS = ["lone", "low", "medium", "high", "pile"]
 WIDEST = "avx512"
-NOT_BUILT = "not built"
 NOT_MEASURED = "not measured"
 
 
@@ -18,9 +17,9 @@ class Row:
     verdict: str  # "yes", "NO", or why there is none
 
 
-def row(figure, value, aim, is_reached, form, absent=NOT_MEASURED):
+def row(figure, value, aim, is_reached, form):
     if value is None:
-        return Row(figure, "-", aim, absent)
+        return Row(figure, "-", aim, NOT_MEASURED)
     return Row(figure, form(value), aim, "yes" if is_reached(value) else "NO")
 
 
@@ -28,8 +27,8 @@ def times(value):
     return f"x{value:.3g}"
 
 
-def at_least(figure, value, least, absent=NOT_MEASURED):
-    return row(figure, value, f"x{least:g}", lambda v: v >= least, times, absent)
+def at_least(figure, value, least):
+    return row(figure, value, f"x{least:g}", lambda v: v >= least, times)
 
 
 def at_most_ms(figure, value_us, most_ms):
@@ -92,13 +91,12 @@ def roof_rows(figures):
 
 
 def prune_rows(figures):
-    """`pruned_*` is a contender of the prune group that search_bench.cpp registers once there is one."""
     rows = []
     for angles, least in [(240, 2), (720, 5)]:
         group = f"prune/medium_{angles}"
         path = figures.best_path(f"{group}/sums_") or WIDEST
         rows.append(at_least(f"exact pruning against shifted sums without it, {angles} angles, {path}",
-                             figures.ratio(f"{group}/whole_{path}", f"{group}/pruned_{path}"), least, NOT_BUILT))
+                             figures.ratio(f"{group}/whole_{path}", f"{group}/pruned_{path}"), least))
         early = figures.ratio(f"{group}/whole_{path}", f"{group}/sums_{path}")
         rows.append(Row(f"early termination alone, {angles} angles, {path}", "-" if early is None else times(early), "beside it",
                         NOT_MEASURED if early is None else "-"))

@@ -28,9 +28,12 @@ void Acceptance::note_rejected(double score) noexcept {
   result_.best_rejected_score = std::max(result_.best_rejected_score, score);
 }
 
-Verdict Acceptance::consider(const refine::PolishResult& polished) noexcept {
+Verdict Acceptance::consider(const refine::PolishResult& polished,
+                             const Verification& alone) noexcept {
   const Pose& pose = polished.work_T_object;
-  const Verification v = verifier_.verify(fine_, claimed_, pose, settings_.verify);
+  const Verification v = is_claimed_near(pose.position_mm, 0)
+                             ? verifier_.verify(fine_, claimed_, pose, settings_.verify)
+                             : alone;
   if (v.surface.claimed_count > kClaimedShareMax * v.surface.visible_count) {
     note_rival(v.score, pose);
     return Verdict::kNoMatch;

@@ -37,9 +37,11 @@ class Acceptance {
         claimed_(claimed),
         result_(result) {}
 
-  /// Takes a polished pose as the next match, when it is one. A pose that is none may become one
-  /// later, when parts that adjoin it have been accepted.
-  [[nodiscard]] Verdict consider(const refine::PolishResult& polished) noexcept;
+  /// Takes a polished pose as the next match, when it is one; `alone` is its verification without
+  /// any match. A pose that is none may become one later, when parts that adjoin it have been
+  /// accepted.
+  [[nodiscard]] Verdict consider(const refine::PolishResult& polished,
+                                 const Verification& alone) noexcept;
   /// What a pose would be if no match stood in its way.
   [[nodiscard]] Verdict judge(const refine::PolishResult& polished,
                               const Verification& v) const noexcept;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "flatpose/model/template.hpp"
+#include "flatpose/model/normal_spread.hpp"
 
 namespace flatpose::locate {
 
@@ -13,12 +13,7 @@ namespace flatpose::locate {
 class DirectionWeight {
  public:
   explicit DirectionWeight(const model::Template& part) noexcept {
-    double xx = 0, xy = 0, yy = 0;
-    for (const model::ContourPoint& p : part.contour_points()) {
-      xx += static_cast<double>(p.nx) * p.nx;
-      xy += static_cast<double>(p.nx) * p.ny;
-      yy += static_cast<double>(p.ny) * p.ny;
-    }
+    const auto [xx, xy, yy] = model::normal_spread(part);
     const double count = std::max(1, part.contour_count);
     const double determinant = (xx * yy - xy * xy) / (count * count);
     constexpr double kParallel = 0.01;  // contours of hardly more than one direction weigh alike

@@ -21,6 +21,7 @@ constexpr double kValidShareMin = 0.02;
 constexpr int kRoundCount = 4;
 // No polish makes so much of a pose.
 constexpr double kPolishGain = 0.3;
+
 /// One search from scan to result. Lives on the stack of locate().
 class Pipeline {
  public:
@@ -83,10 +84,10 @@ class Pipeline {
     settings_.search.vector_path = limits_.vector_path;
     settings_.scene.vector_path = limits_.vector_path;
     settings_.polish.vector_path = limits_.vector_path;
-    settings_.scene.reach = &survey->reach;
+    scene::SceneConfig scene_config = settings_.scene;
+    scene_config.reach = &survey->reach;
     const Status s =
-        scene::build_scene(scan_, frames_, *grid, settings_.scene, arena_, scene_, host_.executor);
-    settings_.scene.reach = nullptr;  // it goes
+        scene::build_scene(scan_, frames_, *grid, scene_config, arena_, scene_, host_.executor);
     result_.timings.rectify_us = lap();
     if (s == Status::kTooFewPoints) return end(Outcome::kScanPoor);  // points, but no surface
     if (s != Status::kOk) return s;
@@ -122,7 +123,7 @@ class Pipeline {
     if (arena_.failed()) return Status::kOutOfMemory;
     // Starts that are no farther apart than the search's steps lead to the same pose.
     const double place_step_mm = settings_.places.stride_px * work_.coarse.grid.cell_mm;
-    instances_ = work_.instances;
+    instances_ = Instances(work_.instances);
     tried_ = PoseSet(work_.starts, place_step_mm, settings_.search.angle_step_rad);
     const Status s = build_features(scene_, settings_, arena_, host_.executor, work_);
     result_.timings.features_us = lap();
@@ -130,10 +131,8 @@ class Pipeline {
   }
 
   Status search(int anchor) noexcept {
-    // A further anchor is for parts whose first one is covered; in the open they are found.
-    const int spare = 42;
     const auto wanted =
-        static_cast<std::size_t>(std::min(kCandidateCountMax, spare + 6 * config_.max_matches));
+        static_cast<std::size_t>(std::min(kCandidateCountMax, 42 + 6 * config_.max_matches));
     const Result<search::GridSearchResult> found =
         search::grid_search(work_.coarse, work_.tilt, work_.places, part_, anchor, settings_.search,
                             arena_, work_.candidates.first(wanted), host_.executor);
@@ -290,7 +289,7 @@ class Pipeline {
       Instance& instance = instances_[i];
       if (!instance.is_open || !has_news(instance)) continue;
       instance.judged_at = result_.match_count;
-      const Verdict verdict = acceptance_.consider(instance.polished);
+      const Verdict verdict = acceptance_.consider(instance.polished, instance.verification);
       if (verdict == Verdict::kGuess) {
         close_place_of(instance);
         return has_new;

@@ -19,7 +19,7 @@ Workspace take_workspace(Arena& arena, const rectify::Grid& grid) noexcept {
   work.places = search::take_places(arena, work.coarse.grid.width_px, work.coarse.grid.height_px);
   work.claimed = arena.take_image<std::uint8_t>(grid.width_px, grid.height_px);
   work.candidates = arena.take<search::Candidate>(kCandidateCountMax);
-  work.instances = Instances(arena.take<Instance>(kInstanceCountMax));
+  work.instances = arena.take<Instance>(kInstanceCountMax);
   work.starts = arena.take<Pose>(kStartCountMax);
   work.polish = refine::take_polish_scratch(arena);
   return work;

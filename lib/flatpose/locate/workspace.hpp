@@ -27,7 +27,7 @@ struct Workspace {
   search::Places places;
   ImageView<std::uint8_t> claimed;
   std::span<search::Candidate> candidates;
-  Instances instances;
+  std::span<Instance> instances;
   std::span<Pose> starts;  ///< Of refinements.
   refine::PolishScratch polish;
 };

@@ -2,6 +2,5 @@
 #include "flatpose/rectify/row_kernels.inc"
 
 namespace flatpose::rectify {
-const RowKernels kAvx2RowKernels = {add_extent, transform_row, paint_single_cells,
-                                    paint_several_cells};
+const RowKernels kAvx2RowKernels = kRowKernels;
 }  // namespace flatpose::rectify

@@ -2,6 +2,5 @@
 #include "flatpose/rectify/row_kernels.inc"
 
 namespace flatpose::rectify {
-const RowKernels kPortableRowKernels = {add_extent, transform_row, paint_single_cells,
-                                        paint_several_cells};
+const RowKernels kPortableRowKernels = kRowKernels;
 }  // namespace flatpose::rectify

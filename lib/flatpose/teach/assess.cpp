@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flatpose/core/maths.hpp"
+#include "flatpose/model/normal_spread.hpp"
 #include "flatpose/teach/symmetry.hpp"
 
 namespace flatpose::teach {
@@ -36,12 +37,7 @@ void flag(model::Template& part, model::Weakness weakness, bool is_weak) noexcep
 // The smallest share of the contour's normals that any direction in the plane has; 0.5 for a
 // circle, 0 for parallel lines.
 double direction_share(const model::Template& part) noexcept {
-  double xx = 0, xy = 0, yy = 0;
-  for (const model::ContourPoint& p : part.contour_points()) {
-    xx += static_cast<double>(p.nx) * p.nx;
-    xy += static_cast<double>(p.nx) * p.ny;
-    yy += static_cast<double>(p.ny) * p.ny;
-  }
+  const auto [xx, xy, yy] = model::normal_spread(part);
   const double half_gap = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
   return (0.5 * (xx + yy) - half_gap) / std::max(1, part.contour_count);
 }
