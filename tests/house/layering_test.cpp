@@ -18,7 +18,8 @@ const std::vector<std::string> kRooms{"core",  "geometry", "autodiff", "rectify"
                                       "model", "search",   "refine",   "locate",  "teach"};
 
 // The same for port/linux: what asks the system for one thing, then what needs all of it.
-const std::vector<std::string> kLinuxRooms{"clock", "cpu", "files", "threads", "tool"};
+const std::vector<std::string> kLinuxRooms{"clock",   "cpu",  "files", "realtime",
+                                           "threads", "tool", "daemon"};
 
 struct Include {
   fs::path file;     // relative to the tree

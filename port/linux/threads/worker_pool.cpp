@@ -1,10 +1,17 @@
 #include "port/linux/threads/worker_pool.hpp"
 
+#include <string>
+
+#include "port/linux/realtime/thread_setup.hpp"
+
 namespace flatpose::port {
 namespace {
 
 // Some tens of microseconds to a few hundred, by processor.
 constexpr int kLooksBeforeSleep = 4000;
+/// Who waits for others lets go of the processor now and then: with a fixed priority nobody else of
+/// the same would run on it.
+constexpr int kLooksBeforeYield = 4000;
 
 void pause() noexcept {
 #if defined(__x86_64__)
@@ -14,13 +21,24 @@ void pause() noexcept {
 
 }  // namespace
 
-WorkerPool::WorkerPool(int thread_count) {
+WorkerPool::WorkerPool(int thread_count, const RealtimeConfig& realtime) {
+  std::vector<Steps> by_thread(static_cast<std::size_t>(thread_count < 1 ? 1 : thread_count));
   try {
-    for (int i = 1; i < thread_count; ++i) threads_.emplace_back([this] { work(); });
+    for (int i = 1; i < thread_count; ++i) {
+      threads_.emplace_back([this, i, &realtime, &steps = by_thread[static_cast<std::size_t>(i)]] {
+        steps = set_up_this_thread(realtime, i, "search " + std::to_string(i));
+        ready_count_.fetch_add(1);
+        ready_count_.notify_one();
+        work();
+      });
+    }
   } catch (...) {
     stop();
     throw;
   }
+  for (int ready = ready_count_.load(); ready + 1 < thread_count; ready = ready_count_.load())
+    ready_count_.wait(ready);
+  for (Steps& steps : by_thread) append(steps_, std::move(steps));
 }
 
 WorkerPool::~WorkerPool() { stop(); }
@@ -47,7 +65,10 @@ void WorkerPool::parallel_for(int chunk_count, Task task, void* context) noexcep
   call_.fetch_add(1);
   call_.notify_all();
   take_chunks();
-  while (done_count_.load() < static_cast<std::uint32_t>(chunk_count)) pause();
+  for (int looks = 1; done_count_.load() < static_cast<std::uint32_t>(chunk_count); ++looks) {
+    pause();
+    if (looks % kLooksBeforeYield == 0) std::this_thread::yield();
+  }
 }
 
 void WorkerPool::take_chunks() noexcept {

@@ -10,20 +10,26 @@
 #include <vector>
 
 #include "flatpose/core/executor.hpp"
+#include "port/linux/realtime/config.hpp"
+#include "port/linux/realtime/step.hpp"
 
 namespace flatpose::port {
 
 class WorkerPool final : public Executor {
  public:
-  /// The caller of parallel_for() is one of the `thread_count` (>= 1).
+  /// The caller of parallel_for() is one of the `thread_count` (>= 1), number 0, and sets itself up
+  /// (set_up_this_thread); the others are set up by `realtime` when this returns.
   /// Fails: std::system_error when the system gives no more threads.
-  explicit WorkerPool(int thread_count);
+  explicit WorkerPool(int thread_count, const RealtimeConfig& realtime = {});
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Thread: one caller at a time; a task must not call it.  Memory: none.
   void parallel_for(int chunk_count, Task task, void* context) noexcept override;
+
+  /// What became of the set-up, thread by thread.
+  [[nodiscard]] const Steps& steps() const noexcept { return steps_; }
 
  private:
   void work() noexcept;
@@ -41,6 +47,8 @@ class WorkerPool final : public Executor {
   std::atomic<std::uint32_t> done_count_{0};
   std::atomic<std::uint32_t> call_{0};  ///< Counts jobs; who sleeps waits for it to change.
   std::atomic<bool> is_over_{false};
+  std::atomic<int> ready_count_{0};
+  Steps steps_;
   std::vector<std::thread> threads_;
 };
 

@@ -1,12 +1,16 @@
 #include "port/linux/threads/worker_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/prctl.h>
 
 #include <atomic>
 #include <chrono>
 #include <set>
 #include <thread>
 #include <vector>
+
+#include "port/linux/realtime/thread_setup.hpp"
 
 namespace flatpose::port {
 namespace {
@@ -56,6 +60,41 @@ TEST(WorkerPool, OfOneThreadIsTheCallers) {
   auto note = [&](int) { threads.insert(std::this_thread::get_id()); };
   for_each_chunk(pool, 5, note);
   EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+}
+
+TEST(WorkerPool, SetsItsThreadsUp) {
+  RealtimeConfig config;
+  config.timer_slack_ns = 4321;
+  WorkerPool pool(3, config);
+  ASSERT_EQ(pool.steps().size(), 2U);  // the caller's thread is the caller's
+  for (const Step& step : pool.steps()) EXPECT_TRUE(step.is_done) << line_of(step);
+  std::atomic<int> started = 0;
+  std::atomic<int> set_up = 0;
+  auto look = [&](int) {
+    ++started;
+    while (started < 3) std::this_thread::yield();
+    if (prctl(PR_GET_TIMERSLACK) == 4321) ++set_up;
+  };
+  for_each_chunk(pool, 3, look);
+  EXPECT_EQ(set_up, 2);
+}
+
+// A chunk that has to wait for something lets its thread sleep. When it wakes up, the caller, of
+// the same priority on the same processor, must make room. Without the right to a priority this
+// shows nothing.
+TEST(WorkerPool, EndsOnOneProcessorWithAPriority) {
+  std::atomic<bool> is_done = false;
+  std::thread([&] {
+    RealtimeConfig config;
+    config.cpus = {sched_getcpu()};
+    config.priority = 1;
+    const Steps steps = set_up_this_thread(config, 0, "test");
+    WorkerPool pool(2, config);
+    auto wait_a_little = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+    for (int job = 0; job < 20; ++job) for_each_chunk(pool, 2, wait_a_little);
+    is_done = true;
+  }).join();
+  EXPECT_TRUE(is_done);
 }
 
 }  // namespace
