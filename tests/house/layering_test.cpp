@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kRooms{"core",  "geometry", "autodiff", "rectify", "image", "scene",
                                       "model", "search",   "refine",   "locate",  "teach"};
 
+// What a PLC sees, without a socket: above all of lib, below port.
+const std::vector<std::string> kBusRooms{"job", "result_map", "modbus"};
+
 // The same for port/linux: what asks the system for one thing, then what needs all of it.
 const std::vector<std::string> kLinuxRooms{"clock",   "cpu",  "files", "realtime",
                                            "threads", "tool", "daemon"};
@@ -72,11 +75,24 @@ TEST(Layering, RoomsOfLibIncludeOnlyWhatStandsBelow) {
   }
 }
 
+// Of the standard library, what needs neither a heap nor a system.
+const std::vector<std::string> kFreestanding{
+    "algorithm", "array",   "atomic",   "bit",         "cassert",         "cmath",   "compare",
+    "cstddef",   "cstdint", "cstdlib",  "cstring",     "limits",          "numbers", "span",
+    "tuple",     "utility", "optional", "type_traits", "initializer_list"};
+
+bool is_freestanding(const std::string& header) {
+  return std::find(kFreestanding.begin(), kFreestanding.end(), header) != kFreestanding.end();
+}
+
+TEST(Layering, FieldbusKnowsNoSystemNoHeapAndNoOtherLibrary) {
+  for (const Include& include : includes_under("fieldbus/flatpose")) {
+    EXPECT_TRUE(starts_with(include.what, "flatpose/") || is_freestanding(include.what))
+        << include.file << " includes <" << include.what << ">";
+  }
+}
+
 TEST(Layering, LibKnowsNoSystemNoHeapAndNoOtherLibraryButEigenInRefine) {
-  const std::vector<std::string> allowed{
-      "algorithm", "array",   "atomic",   "bit",         "cassert",         "cmath",   "compare",
-      "cstddef",   "cstdint", "cstdlib",  "cstring",     "limits",          "numbers", "span",
-      "tuple",     "utility", "optional", "type_traits", "initializer_list"};
   for (const Include& include : includes_under("lib/flatpose")) {
     if (starts_with(include.what, "flatpose/")) continue;
     const bool is_eigen = starts_with(include.what, "Eigen/");
@@ -88,8 +104,24 @@ TEST(Layering, LibKnowsNoSystemNoHeapAndNoOtherLibraryButEigenInRefine) {
     const bool is_vector_text =
         include.file.extension() == ".inc" || include.file == "lib/flatpose/rectify/lanes.hpp";
     if (is_vector_text && (include.what == "immintrin.h" || include.what == "arm_neon.h")) continue;
-    EXPECT_NE(std::find(allowed.begin(), allowed.end(), include.what), allowed.end())
+    EXPECT_TRUE(is_freestanding(include.what))
         << include.file << " includes <" << include.what << ">";
+  }
+}
+
+TEST(Layering, RoomsOfFieldbusIncludeLibAndWhatStandsBelow) {
+  const auto top = static_cast<std::ptrdiff_t>(kBusRooms.size());
+  const auto lib_top = static_cast<std::ptrdiff_t>(kRooms.size());
+  const auto includes = includes_under("fieldbus/flatpose");
+  ASSERT_GT(includes.size(), 20U);
+  for (const Include& include : includes) {
+    if (!starts_with(include.what, "flatpose/")) continue;
+    const std::string from = step_of(include.file, 2);
+    const std::string to = step_of(include.what, 1);
+    EXPECT_LT(rank_of(from, kBusRooms), top) << include.file << " is in a room of no rank";
+    const bool is_of_lib = rank_of(to) < lib_top;
+    EXPECT_TRUE(is_of_lib || rank_of(to, kBusRooms) <= rank_of(from, kBusRooms))
+        << include.file << " includes " << include.what;
   }
 }
 
@@ -107,7 +139,7 @@ TEST(Layering, RoomsOfPortLinuxIncludeOnlyWhatStandsBelow) {
 }
 
 TEST(Layering, TheProductKnowsNeitherItsBenchesNorItsTests) {
-  for (const std::string folder : {"lib/flatpose", "port"}) {
+  for (const std::string folder : {"lib/flatpose", "fieldbus", "port"}) {
     for (const Include& include : includes_under(folder)) {
       EXPECT_FALSE(starts_with(include.what, "bench/") || starts_with(include.what, "tests/"))
           << include.file << " includes " << include.what;
@@ -134,7 +166,7 @@ TEST(Layering, OnlyPortLinuxKnowsTheSystem) {
 }
 
 TEST(Layering, OnlyPortLinuxAsksTheProcessor) {
-  for (const std::string folder : {"lib/flatpose", "port/sim"}) {
+  for (const std::string folder : {"lib/flatpose", "fieldbus", "port/sim"}) {
     over_lines(folder, [&](const fs::path& file, const std::string& line) {
       EXPECT_EQ(line.find("__builtin_cpu"), std::string::npos) << file << ": " << line;
     });
