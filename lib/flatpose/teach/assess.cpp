@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flatpose/core/maths.hpp"
+#include "flatpose/core/sort.hpp"
 #include "flatpose/model/normal_spread.hpp"
 #include "flatpose/teach/symmetry.hpp"
 
@@ -79,7 +80,7 @@ void set_threshold(const locate::LocateResult& everything, const Pose& face_T_ob
     }
   }
   scores[count++] = everything.rival_score;
-  std::sort(scores.begin(), scores.begin() + count, [](double a, double b) { return a > b; });
+  sort_in_place(std::span(scores).first(count), [](double a, double b) { return a > b; });
 
   // Down from the part's own score over those of its like, to the first gap.
   double lowest_like = part.self_score;

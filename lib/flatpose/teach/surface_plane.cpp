@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "flatpose/core/sort.hpp"
 #include "flatpose/refine/levenberg_marquardt.hpp"
 
 namespace flatpose::teach {
@@ -27,7 +28,7 @@ double densest_offset(std::span<const SurfaceSample> samples, const Plane& plane
     scratch[i] =
         samples[i].z_mm - plane.slope_x * samples[i].x_mm - plane.slope_y * samples[i].y_mm;
   }
-  std::sort(scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(count));
+  sort_in_place(scratch.first(count), [](double a, double b) { return a < b; });
   std::size_t best_begin = 0;
   std::size_t best_end = 0;
   for (std::size_t begin = 0, end = 0; end < count; ++end) {

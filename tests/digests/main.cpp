@@ -1,9 +1,11 @@
 // Prints a digest of each step of some whole searches: the scan made, the template taught from it,
-// what is located. The same lines come out on every machine and on every vector path.
+// what is located. The same lines come out of every build, on every machine and vector path, and
+// however many threads share the work; table.txt holds them.
 //
-//   flatpose_digests [portable | avx2 | avx512 | best] [PART]
+//   flatpose_digests [portable | avx2 | avx512 | best] [THREADS] [PART]
 
 #include <cstdio>
+#include <cstdlib>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "flatpose/model/template_file.hpp"
 #include "flatpose/teach/teacher.hpp"
 #include "port/linux/cpu/vector_path.hpp"
+#include "port/linux/threads/worker_pool.hpp"
 #include "port/sim/simulate.hpp"
 
 namespace {
@@ -50,7 +53,8 @@ sim::SimulatedScan simulated(const char* scene, const char* part, std::uint64_t 
 
 class Machine {
  public:
-  explicit Machine(VectorPath path) : memory_(teach::Teacher::required_bytes(limits_)) {
+  Machine(VectorPath path, int thread_count)
+      : memory_(teach::Teacher::required_bytes(limits_)), workers_(thread_count) {
     limits_.vector_path = path;
   }
 
@@ -91,8 +95,8 @@ class Machine {
     locate::Locator locator;
     locate::LocateResult result;
     if (locator.init(limits_, memory_) != Status::kOk ||
-        locator.locate(part, scan.view(), frames_of_scan(true), config, StoppedClock{}, result) !=
-            Status::kOk)
+        locator.locate(part, scan.view(), frames_of_scan(true), config, Host{clock_, workers_},
+                       result) != Status::kOk)
       return false;
     std::printf("located  %-9s %2d of %7lld hypotheses  %016llx\n", name, result.match_count,
                 static_cast<long long>(result.hypothesis_count),
@@ -102,6 +106,8 @@ class Machine {
 
   locate::Limits limits_{300, 250, 400'000};
   std::vector<std::byte> memory_;
+  StoppedClock clock_;
+  port::WorkerPool workers_;
 };
 
 }  // namespace
@@ -109,12 +115,13 @@ class Machine {
 int main(int count, char** words) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const std::string word = count > 1 ? words[1] : "best";
-  const std::string only = count > 2 ? words[2] : "";
+  const int thread_count = count > 2 ? std::atoi(words[2]) : 1;
+  const std::string only = count > 3 ? words[3] : "";
   VectorPath path = port::best_vector_path();
   if (word == "portable") path = VectorPath::kPortable;
   if (word == "avx2") path = VectorPath::kAvx2;
   if (word == "avx512") path = VectorPath::kAvx512;
-  Machine machine(path);
+  Machine machine(path, thread_count);
   for (const Case& one : kCases) {
     if ((!only.empty() && only != one.part) || machine.run(one)) continue;
     std::fprintf(stderr, "flatpose_digests: '%s' failed\n", one.part);

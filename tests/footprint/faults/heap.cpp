@@ -1,0 +1,2 @@
+// Asks for the heap.
+int* made(int value) { return new int(value); }

@@ -1,0 +1,5 @@
+// Throws.
+int positive(int value) {
+  if (value < 0) throw value;
+  return value;
+}
