@@ -47,8 +47,9 @@ std::string to_cpu_list(std::vector<int> cpus) {
   for (std::size_t i = 0; i < cpus.size();) {
     std::size_t end = i + 1;
     while (end < cpus.size() && cpus[end] == cpus[end - 1] + 1) ++end;
-    text += (text.empty() ? "" : ",") + std::to_string(cpus[i]);
-    if (end - i > 1) text += "-" + std::to_string(cpus[end - 1]);
+    if (!text.empty()) text += ',';
+    text += std::to_string(cpus[i]);
+    if (end - i > 1) text.append(1, '-').append(std::to_string(cpus[end - 1]));
     i = end;
   }
   return text;
