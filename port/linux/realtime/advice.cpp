@@ -14,6 +14,7 @@ constexpr const char* kDebianMachine = "amd64";
 #endif
 constexpr const char* kCpuFolder = "/sys/devices/system/cpu/cpu";
 constexpr std::int64_t kBytesPerMb = 1024 * 1024;
+constexpr std::int64_t kFairServerUsual_ns = 50'000'000;
 
 class Adviser {
  public:
@@ -135,16 +136,19 @@ class Adviser {
   void look_at_fair_server() {
     std::string cpus_to_mend;
     std::int64_t most_ns = 0;
+    bool is_known = true;
     for (const int cpu : found()) {
-      const std::int64_t given_ns = machine_.cpus.at(cpu).fair_server_ns.value_or(0);
+      const auto given_ns = machine_.cpus.at(cpu).fair_server_ns;
       if (given_ns == 0 || contains(machine_.isolated, cpu)) continue;
-      most_ns = std::max(most_ns, given_ns);
+      is_known = is_known && given_ns.has_value();
+      most_ns = std::max(most_ns, given_ns.value_or(kFairServerUsual_ns));
       cpus_to_mend += (cpus_to_mend.empty() ? "" : " ") + std::to_string(cpu);
     }
     if (cpus_to_mend.empty()) return;
     add("throttling",
-        "where ordinary work waits, SCHED_FIFO is stopped for " +
-            std::to_string(most_ns / 1'000'000) + " ms of each second",
+        std::string("where ordinary work waits, SCHED_FIFO is stopped for ") +
+            std::to_string(most_ns / 1'000'000) + " ms of each second" +
+            (is_known ? "" : ", unless that was changed: only root can see it"),
         "for i in " + cpus_to_mend +
             "; do echo 0 | sudo tee /sys/kernel/debug/sched/fair_server/cpu$i/runtime; done");
   }

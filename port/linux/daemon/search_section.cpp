@@ -1,0 +1,45 @@
+// [search]: threads, and the limits that memory is taken for.
+
+#include "port/linux/cpu/vector_path.hpp"
+#include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/scan_buffer.hpp"
+#include "port/linux/daemon/section.hpp"
+
+namespace flatpose::daemon {
+namespace {
+
+constexpr Range kThreads{1, 64};
+constexpr Range kSides_px{2, 32767};
+constexpr Range kCells{10'000, 16'777'216};
+constexpr Range kScanBytes{1 << 20, std::int64_t{16} << 30};
+
+int small(std::optional<std::int64_t> given, int usual) {
+  return static_cast<int>(given.value_or(usual));
+}
+
+}  // namespace
+
+void read_search(Section section, Config& config) {
+  SearchConfig& search = config.search;
+  locate::Limits& limits = search.limits;
+  search.thread_count = small(section.whole("threads", kThreads), search.thread_count);
+  limits.scan_width_px = small(section.whole("scan_width_px", kSides_px), limits.scan_width_px);
+  limits.scan_height_px = small(section.whole("scan_height_px", kSides_px), limits.scan_height_px);
+  limits.cell_count = small(section.whole("cell_count", kCells), limits.cell_count);
+  limits.vector_path = port::best_vector_path();
+  search.max_scan_bytes =
+      section.whole("max_scan_bytes", kScanBytes).value_or(search.max_scan_bytes);
+  section.finish();
+}
+
+std::int64_t held_bytes(const SearchConfig& search) {
+  return static_cast<std::int64_t>(locate::Locator::required_bytes(search.limits)) +
+         kScanBufferCount * static_cast<std::int64_t>(scan_buffer_bytes(search.limits));
+}
+
+std::string threads_text(const SearchConfig& search) {
+  return std::to_string(search.thread_count) + " search thread" +
+         (search.thread_count == 1 ? "" : "s");
+}
+
+}  // namespace flatpose::daemon

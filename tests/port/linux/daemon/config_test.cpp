@@ -1,0 +1,129 @@
+#include "port/linux/daemon/config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/port/linux/files/temporary_folder.hpp"
+
+namespace flatpose::daemon {
+namespace {
+
+constexpr const char* kPath = "dir/f.toml";
+
+void expect_refused(const std::string& text, std::initializer_list<std::string_view> parts) {
+  SCOPED_TRACE(text);
+  port::expect_input_error([&] { (void)parse_config(kPath, text); }, parts);
+}
+
+TEST(Config, IsAllUsualWhenEmpty) {
+  const Config config = parse_config(kPath, "");
+  EXPECT_EQ(config.search.thread_count, 1);
+  EXPECT_EQ(config.search.limits.scan_width_px, 1536);
+  EXPECT_EQ(config.search.limits.scan_height_px, 1280);
+  EXPECT_EQ(config.search.limits.cell_count, 4'000'000);
+  EXPECT_EQ(config.search.max_scan_bytes, 268'435'456);
+  EXPECT_TRUE(config.realtime.cpus.empty());
+  EXPECT_EQ(config.realtime.priority, 0);
+  EXPECT_FALSE(config.realtime.lock_memory);
+  EXPECT_FALSE(config.realtime.cpu_latency_us);
+  EXPECT_FALSE(config.realtime.timer_slack_ns);
+}
+
+TEST(Config, HoldsWhatIsGiven) {
+  const Config config = parse_config(kPath,
+                                     "[realtime]\ncpus = [3, 2]\npriority = 80\n"
+                                     "lock_memory = true\ncpu_latency_us = 0\n"
+                                     "timer_slack_ns = 500\n"
+                                     "[search]\nthreads = 2\nscan_width_px = 640\n"
+                                     "scan_height_px = 480\ncell_count = 500_000\n"
+                                     "max_scan_bytes = 0x1000000\n");
+  EXPECT_EQ(config.search.thread_count, 2);
+  EXPECT_EQ(config.search.limits.scan_width_px, 640);
+  EXPECT_EQ(config.search.limits.scan_height_px, 480);
+  EXPECT_EQ(config.search.limits.cell_count, 500'000);
+  EXPECT_EQ(config.search.max_scan_bytes, 0x1000000);
+  EXPECT_EQ(config.realtime.cpus, (std::vector<int>{3, 2}));
+  EXPECT_EQ(config.realtime.priority, 80);
+  EXPECT_TRUE(config.realtime.lock_memory);
+  EXPECT_EQ(config.realtime.cpu_latency_us, 0);
+  EXPECT_EQ(config.realtime.timer_slack_ns, 500);
+}
+
+TEST(Config, NamesFileLineAndRemedy) {
+  expect_refused("[realtime]\n\npriority = 100\n",
+                 {"dir/f.toml:3: 'priority' is 100; give a number between 0 and 99"});
+  expect_refused("[search]\nthreads = 0\n", {"dir/f.toml:2: "});
+  expect_refused("[search]\nthreads = 1.5\n", {"dir/f.toml:2: ", "not a whole number"});
+  expect_refused("[search]\nscan_width_px = \"640\"\n", {"dir/f.toml:2: "});
+  expect_refused("[search]\ncell_count = 99999999999\n", {"dir/f.toml:2: "});
+  expect_refused("[realtime]\nlock_memory = 1\n", {"dir/f.toml:2: ", "true nor false"});
+  expect_refused("[realtime]\ncpus = 2\n", {"dir/f.toml:2: ", "not a list", "cpus = [1, 2]"});
+  expect_refused("[realtime]\ncpus = [\n 2,\n \"x\"]\n", {"dir/f.toml:4: "});
+  expect_refused("[realtime]\ncpus = [-1]\n", {"dir/f.toml:2: "});
+  expect_refused("[realtime]\ncpu_latency_us = -1\n", {"dir/f.toml:2: "});
+  expect_refused("search = 5\n", {"dir/f.toml:1: 'search' is not a section; write [search]"});
+  expect_refused("# one\n# two\n[search\n", {"dir/f.toml:3: "});
+  expect_refused("[search]\nthreads = 1\nthreads = 2\n", {"dir/f.toml:3: "});
+}
+
+TEST(Config, RefusesUnknownKeysWithWhatMayBeMeant) {
+  expect_refused("[realtime]\nprioritty = 80\n",
+                 {"dir/f.toml:2: unknown key 'prioritty' in [realtime]; did you mean 'priority'?"});
+  expect_refused("\n[realtme]\npriority = 80\n", {"dir/f.toml:2: ", "did you mean 'realtime'?"});
+  expect_refused("[search]\nthread = 2\n", {"did you mean 'threads'?"});
+  expect_refused("[search]\ncolour = 2\n", {"unknown key 'colour'", "known: threads, scan_width"});
+}
+
+TEST(Config, GivesEachThreadACpu) {
+  expect_refused("[search]\nthreads = 3\n[realtime]\ncpus = [1, 2]\n",
+                 {"dir/f.toml:4: ", "3 threads"});
+  expect_refused("[realtime]\ncpus = [2, 2]\n", {"dir/f.toml:2: ", "twice"});
+  EXPECT_EQ(parse_config(kPath, "[realtime]\ncpus = [1, 2]\n").realtime.cpus.size(), 2U);
+}
+
+TEST(Config, OfAnyBytesIsReadOrRefusedInOneLine) {
+  const std::string good = "[search]\nthreads = 2\n[realtime]\ncpus = [3, 2]\nlock_memory = true\n";
+  std::mt19937 random(11);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    for (int change = static_cast<int>(random() % 4); change >= 0; --change) {
+      const std::size_t place = random() % text.size();
+      if (random() % 3 == 0)
+        text.erase(place, 1 + random() % 5);
+      else
+        text[place] = static_cast<char>(random() % 256);
+      if (text.empty()) text = "=";
+    }
+    try {
+      const Config config = parse_config(kPath, text);
+      EXPECT_GE(config.search.thread_count, 1);
+    } catch (const port::InputError& error) {
+      ++refused;
+      EXPECT_EQ(error.line().rfind("dir/f.toml:", 0), 0U) << error.line();
+      port::expect_one_line(error.line());
+    }
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(Config, ThatCannotBeReadSaysSo) {
+  const port::TemporaryFolder folder;
+  port::expect_input_error([&] { (void)load_config(folder.path("none.toml")); }, {"none.toml"});
+  port::expect_input_error([&] { (void)load_config(folder.path()); }, {folder.path()});
+  const std::string big = folder.write("big.toml", std::string(2 << 20, '#'));
+  port::expect_input_error([&] { (void)load_config(big); }, {"big.toml"});
+}
+
+TEST(Config, OfTheExampleIsTheUsualOne) {
+  const Config example = load_config(FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml");
+  const Config usual = parse_config(kPath, "");
+  EXPECT_EQ(example.search.thread_count, usual.search.thread_count);
+  EXPECT_EQ(held_bytes(example.search), held_bytes(usual.search));
+  EXPECT_EQ(example.search.max_scan_bytes, usual.search.max_scan_bytes);
+  EXPECT_TRUE(example.realtime.cpus.empty());
+}
+
+}  // namespace
+}  // namespace flatpose::daemon
