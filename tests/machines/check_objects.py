@@ -30,7 +30,7 @@ def add_code_of(objdump, archive, code):
     """Adds the instructions of each object of an archive."""
     lines = []
     for line in output_of(objdump, "-d", "--no-show-raw-insn", archive).splitlines():
-        name = re.match(r"(\S+):\s+file format", line)
+        name = re.match(r"(?:\S+\()?([^\s()]+)\)?:\s+file format", line)
         if name:
             lines = code.setdefault(name[1], [])
         elif re.match(r"\s+[0-9a-f]+:", line):
@@ -41,7 +41,7 @@ def weak_symbols(nm, archive):
     """(object, symbol) of what other objects may define too."""
     found = []
     for line in output_of(nm, "-A", "--defined-only", archive).splitlines():
-        symbol = re.match(r".*?:([^:]+):\S+ [uvVwW] (\S+)", line)
+        symbol = re.match(r".*?:([^:]+):\s*\S+ [uvVwW] (\S+)", line)
         if symbol:
             found.append((symbol[1], symbol[2]))
     return found

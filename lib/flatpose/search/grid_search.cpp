@@ -56,7 +56,6 @@ class Search {
         images_(images),
         field_(field),
         places_(places),
-        part_(part),
         anchor_(part.anchors[anchor_index]),
         anchor_index_(anchor_index),
         config_(config),
@@ -217,7 +216,6 @@ class Search {
   const SearchImages& images_;
   const TiltField& field_;
   const Places& places_;
-  const model::Template& part_;
   const model::Anchor& anchor_;
   int anchor_index_;
   const GridSearchConfig& config_;

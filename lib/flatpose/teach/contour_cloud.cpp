@@ -11,8 +11,6 @@ constexpr int kContourCountMin = 8;
 // A contour's piece shorter than this many cells, or than this share of the part, is a stray edge.
 constexpr int kChainCellsMin = 8;
 constexpr double kChainShareMin = 0.04;
-// A contour stands this far out of the noise in the teach scan, so that it will in others.
-constexpr double kStepOverNoiseMin = 8.0;
 // Edges around a corner disagree about their direction; where the mean of unit directions is
 // shorter than this, the point holds no direction well and is left out.
 constexpr float kCoherenceMin = 0.86F;
