@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 QUANTILES = [("median", 0.5), ("p99", 0.99), ("p99.9", 0.999), ("p99.99", 0.9999)]
 STAGES = ["rectify", "features", "search", "refine", "verify"]
-COLUMNS = ["scan", "cycle_ns", "busy_ns", "wake_ns", "total_us"] + [f"{stage}_us" for stage in STAGES] + ["outcome"]
+COLUMNS = ["scan", "cycle_ns", "busy_ns", "memory_ns", "wake_ns", "total_us"] + [f"{stage}_us" for stage in STAGES] + ["outcome"]
 DEADLINE_COLUMNS = ["scan", "usual_us", "deadline_us", "elapsed_ns", "outcome"]
 OUTCOME_DEADLINE = 2
 
@@ -55,20 +55,29 @@ class Phase:
         return [row[name] * scale for row in self.rows]
 
 
-def over_usual_us(phase):
-    """How much longer than the median of the same scan's each cycle took, in microseconds; shorter ones count as 0."""
+def against_usual(phase):
+    """(time, median of the same scan's) of each cycle, in nanoseconds."""
     by_scan = defaultdict(list)
     for row in phase.rows:
         by_scan[row["scan"]].append(row["cycle_ns"])
     usual = {scan: summarize(times).values["median"] for scan, times in by_scan.items()}
-    return [max(0.0, (row["cycle_ns"] - usual[row["scan"]]) / 1000.0) for row in phase.rows]
+    return [(row["cycle_ns"], usual[row["scan"]]) for row in phase.rows]
 
 
-def over_own_median_us(samples_ns):
-    if not samples_ns:
-        return []
-    median = summarize(samples_ns).values["median"]
-    return [max(0.0, (sample - median) / 1000.0) for sample in samples_ns]
+def against_median(samples):
+    """(sample, median of all) of each."""
+    median = summarize(samples).values["median"] if samples else None
+    return [(sample, median) for sample in samples]
+
+
+def beyond_ms(pairs_ns):
+    """How much longer than usual, in milliseconds; what was shorter counts as 0."""
+    return [max(0.0, (time - usual) / 1e6) for time, usual in pairs_ns]
+
+
+def most_stretched(pairs):
+    """The greatest ratio of a time to the usual one."""
+    return max((time / usual for time, usual in pairs if usual), default=None)
 
 
 def overruns_us(phase):

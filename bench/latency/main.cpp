@@ -1,4 +1,4 @@
-// flatpose_latency: whole cycles, one after the other, each beside a busy loop of the same length.
+// flatpose_latency: whole cycles, one after the other, each beside loops that always do the same.
 // run_latency.py drives it: it says on standard input what to run next, a line each,
 //
 //   cycles PHASE THREADS SECONDS
@@ -56,17 +56,18 @@ void run_cycles(Rig& rig, int thread_count, double seconds) {
   const CycleRun run = rig.run_cycles(thread_count, seconds);
   for (const CycleSample& s : run.samples) {
     std::printf(
-        "{\"c\":[%d,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%d]}\n", s.scan,
+        "{\"c\":[%d,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%lld,%d]}\n", s.scan,
         static_cast<long long>(s.cycle_ns), static_cast<long long>(s.busy_ns),
-        static_cast<long long>(s.wake_ns), static_cast<long long>(s.timings.total_us),
-        static_cast<long long>(s.timings.rectify_us), static_cast<long long>(s.timings.features_us),
-        static_cast<long long>(s.timings.search_us), static_cast<long long>(s.timings.refine_us),
-        static_cast<long long>(s.timings.verify_us), static_cast<int>(s.outcome));
+        static_cast<long long>(s.memory_ns), static_cast<long long>(s.wake_ns),
+        static_cast<long long>(s.timings.total_us), static_cast<long long>(s.timings.rectify_us),
+        static_cast<long long>(s.timings.features_us), static_cast<long long>(s.timings.search_us),
+        static_cast<long long>(s.timings.refine_us), static_cast<long long>(s.timings.verify_us),
+        static_cast<int>(s.outcome));
   }
   print({{"kind", "end"},
          {"count", run.samples.size()},
          {"in_cycles", json_of(run.in_cycles)},
-         {"in_busy_loops", json_of(run.in_busy_loops)},
+         {"in_loops", json_of(run.in_loops)},
          {"steps", json_of(run.steps)}});
 }
 

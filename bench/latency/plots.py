@@ -6,7 +6,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from figures import by_scene, histogram, over_own_median_us, over_usual_us, overruns_us, summarize
+from figures import against_median, against_usual, beyond_ms, by_scene, histogram, overruns_us, summarize
 from report import BUDGET_MS, OVERRUN_AIM_MS, cycle_phases
 
 COLORS = ["tab:blue", "tab:red", "tab:green", "tab:purple", "tab:brown", "tab:orange"]
@@ -51,15 +51,17 @@ def draw_jitter(axis, phases):
     low, high = 1e-3, 1.0
     series = []
     for phase, color in zip(phases, COLORS):
-        cycles = [us / 1e3 for us in over_usual_us(phase)]
-        busy = [us / 1e3 for us in over_own_median_us(phase.column("busy_ns"))]
-        high = max([high] + cycles + busy)
+        cycles = beyond_ms(against_usual(phase))
+        busy = beyond_ms(against_median(phase.column("busy_ns")))
+        memory = beyond_ms(against_median(phase.column("memory_ns")))
+        high = max([high] + cycles + busy + memory)
         series += [(cycles, dict(color=color, label=f"{phase.name}: cycle", linewidth=1.4)),
-                   (busy, dict(color=color, alpha=0.8, linestyle=":", label=f"{phase.name}: busy loop"))]
+                   (busy, dict(color=color, alpha=0.8, linestyle=":", label=f"{phase.name}: busy loop")),
+                   (memory, dict(color=color, alpha=0.6, linestyle="--", linewidth=0.8, label=f"{phase.name}: memory loop"))]
     for samples, style in series:
-        steps(axis, [value for value in samples if value > 0.0], low, 1.3 * high, 20, **style)
+        steps(axis, [value for value in samples if value > 0.0], low, 1.3 * high, 12, **style)
     axis.set(xscale="log", yscale="log", xlabel="ms", ylabel="count",
-             title="Beyond the median: of the same scan's cycles, and of the busy loop (the machine's own)")
+             title="Beyond the median: of the same scan's cycles, and of the loops (the machine's own)")
     finish(axis, ncol=3, loc="upper left")
 
 
@@ -67,7 +69,7 @@ def draw_overruns(axis, phases):
     low, high = 1e-3, 2.0 * OVERRUN_AIM_MS
     high = max([high] + [us / 1e3 for phase in phases for us in overruns_us(phase)])
     for phase, color in zip(phases, COLORS):
-        steps(axis, [us / 1e3 for us in overruns_us(phase)], low, 1.3 * high, 20, color=color, label=phase.name, linewidth=1.4)
+        steps(axis, [us / 1e3 for us in overruns_us(phase)], low, 1.3 * high, 12, color=color, label=phase.name, linewidth=1.4)
     axis.axvline(OVERRUN_AIM_MS, color="black", linestyle="--")
     axis.annotate(f" aim: {OVERRUN_AIM_MS:g} ms", (OVERRUN_AIM_MS, 0.92), xycoords=("data", "axes fraction"))
     axis.set(xscale="log", yscale="log", xlabel="ms", ylabel="count", title="How far past its deadline a search returned")

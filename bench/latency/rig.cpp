@@ -17,10 +17,11 @@ namespace flatpose::bench {
 namespace {
 
 constexpr std::size_t kSamplesMax = 1'000'000;
-/// Of a cycle and its busy loop: as long as a sleep lasts at least. A thread of fixed priority that
+/// Of what is between two sleeps: as long as one lasts at least. A thread of fixed priority that
 /// never slept would be stopped by the kernel's guard.
-constexpr double kSleepShare = 0.25;
-constexpr double kShareMin = 0.02;  // of the usual time, that a deadline leaves
+constexpr double kSleepShare = 0.15;
+constexpr std::size_t kSweptValues = 1 << 20;  // of 8 bytes, by each thread
+constexpr double kShareMin = 0.02;             // of the usual time, that a deadline leaves
 constexpr double kShareMax = 0.98;
 
 Shot take(const RigConfig& config, const std::string& scene, int seed) {
@@ -85,7 +86,9 @@ void on_search_thread(const Body& body) {
 /// What a search thread holds while it runs.
 struct Rig::Hands {
   Hands(int threads, const port::RealtimeConfig& realtime)
-      : pool(threads, realtime), thread_count(threads) {
+      : pool(threads, realtime),
+        thread_count(threads),
+        swept(kSweptValues * static_cast<std::size_t>(threads), 1) {
     // Set up last: threads inherit what their maker has.
     steps = port::set_up_this_thread(realtime, 0, "search 0");
     port::append(steps, port::Steps(pool.steps()));
@@ -98,8 +101,19 @@ struct Rig::Hands {
     for_each_chunk(pool, thread_count, body);
   }
 
+  void sweep_on_all() noexcept {
+    const std::size_t share = swept.size() / static_cast<std::size_t>(thread_count);
+    auto body = [&](int i) {
+      volatile std::uint64_t kept =
+          sweep(std::span(swept).subspan(static_cast<std::size_t>(i) * share, share));
+      static_cast<void>(kept);
+    };
+    for_each_chunk(pool, thread_count, body);
+  }
+
   port::WorkerPool pool;
   int thread_count;
+  std::vector<std::uint64_t> swept;
   port::Steps steps;
 };
 
@@ -147,8 +161,11 @@ void Rig::cycle(Hands& hands, int scan, std::int64_t busy_steps, CycleRun& run) 
   const std::int64_t busy_start_ns = now_ns();
   hands.spin_on_all(busy_steps);
   sample.busy_ns = now_ns() - busy_start_ns;
+  const std::int64_t sweep_start_ns = now_ns();
+  hands.sweep_on_all();
+  sample.memory_ns = now_ns() - sweep_start_ns;
   run.in_cycles.add(before, between);
-  run.in_busy_loops.add(between, Events::now());
+  run.in_loops.add(between, Events::now());
   sample.timings = result.timings;
   sample.outcome = result.outcome;
 
@@ -174,6 +191,7 @@ CycleRun Rig::run_cycles(int thread_count, double seconds) {
     std::nth_element(usual_us.begin(), usual_us.begin() + usual_us.size() / 2, usual_us.end());
     const std::int64_t busy_steps = spin_steps_for(1000 * usual_us[usual_us.size() / 2]);
     hands.spin_on_all(busy_steps);
+    hands.sweep_on_all();
     Order order(shots_.size());
     const std::int64_t end_ns = now_ns() + static_cast<std::int64_t>(1e9 * seconds);
     while (now_ns() < end_ns && run.samples.size() < samples_max)

@@ -24,20 +24,21 @@ struct RigConfig {
   port::RealtimeConfig realtime;
 };
 
-/// One whole cycle, then the busy loop, then a sleep.
+/// One whole cycle, then the loops, then a sleep.
 struct CycleSample {
   int scan = 0;
   std::int64_t cycle_ns = 0;
   locate::Timings timings;
   locate::Outcome outcome = locate::Outcome::kOk;
   std::int64_t busy_ns = 0;
+  std::int64_t memory_ns = 0;
   std::int64_t wake_ns = 0;  ///< How late the sleep ended.
 };
 
 struct CycleRun {
   std::vector<CycleSample> samples;
   Events in_cycles;
-  Events in_busy_loops;
+  Events in_loops;
   port::Steps steps;  ///< Of the threads' set-up.
 };
 

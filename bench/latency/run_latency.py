@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whole cycles over simulated scans of every kind, idle and under load, each beside a busy loop of the same length; then
-searches with deadlines. A table, all figures, all samples and a picture."""
+"""Whole cycles over simulated scans of every kind, idle and under load, each beside a busy loop of the same length and
+one that reads memory; then searches with deadlines. A table, all figures, all samples and a picture."""
 
 import argparse
 import json
@@ -103,7 +103,7 @@ class Load:
 
 def plan(quick, seconds, cpu_count):
     """(what, name, threads, seconds, loaded)."""
-    total = seconds or (13.0 if quick else 250.0)
+    total = seconds or (13.0 if quick else 280.0)
     both = min(2, cpu_count)
     yield "cycles", "idle", 1, 0.34 * total, False
     yield "cycles", "loaded", 1, 0.34 * total, True

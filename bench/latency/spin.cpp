@@ -27,4 +27,10 @@ std::int64_t spin_steps_for(std::int64_t time_ns) noexcept {
                                    static_cast<double>(std::max<std::int64_t>(best_ns, 1)));
 }
 
+std::uint64_t sweep(std::span<const std::uint64_t> values) noexcept {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t value : values) sum += value;
+  return sum;
+}
+
 }  // namespace flatpose::bench

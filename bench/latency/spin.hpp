@@ -1,7 +1,10 @@
 #pragma once
-// A loop that only counts: what it takes beyond its shortest time is the machine's doing.
+// Loops that always do the same: what they take beyond their usual time is the machine's doing. One
+// only counts; who shares a core's arithmetic, its caches or the way to memory with others notices
+// more than it does, so another one reads memory.
 
 #include <cstdint>
+#include <span>
 
 namespace flatpose::bench {
 
@@ -10,5 +13,8 @@ namespace flatpose::bench {
 
 /// Steps that take this long, by the shortest of several tries.
 [[nodiscard]] std::int64_t spin_steps_for(std::int64_t time_ns) noexcept;
+
+/// Reads all of it and adds up.
+[[nodiscard]] std::uint64_t sweep(std::span<const std::uint64_t> values) noexcept;
 
 }  // namespace flatpose::bench

@@ -6,8 +6,8 @@ import unittest
 
 sys.path.insert(0, sys.argv.pop(1))
 
-from figures import (COLUMNS, DEADLINE_COLUMNS, Phase, by_scene, histogram, over_own_median_us, over_usual_us, overruns_us,
-                     quantile, summarize)
+from figures import (COLUMNS, DEADLINE_COLUMNS, Phase, against_median, against_usual, beyond_ms, by_scene, histogram,
+                     most_stretched, overruns_us, quantile, summarize)
 from report import all_figures, headline, write_report
 
 
@@ -15,7 +15,7 @@ def cycles(rows, name="idle", **end):
     """Rows of (scan, cycle in ms, busy loop in ms)."""
     phase = Phase(name, "cycles", 1, end=end)
     for scan, cycle_ms, busy_ms in rows:
-        values = [scan, cycle_ms * 1e6, busy_ms * 1e6, 2e3, cycle_ms * 1e3, cycle_ms * 500, cycle_ms * 300, 10.0, 20.0, 30.0, 0]
+        values = [scan, cycle_ms * 1e6, busy_ms * 1e6, 5e5, 2e3, cycle_ms * 1e3, cycle_ms * 500, cycle_ms * 300, 10.0, 20.0, 30.0, 0]
         phase.rows.append(dict(zip(COLUMNS, values)))
     return phase
 
@@ -69,9 +69,12 @@ class Quantiles(unittest.TestCase):
 class Samples(unittest.TestCase):
     def test_jitter_is_against_the_same_scan(self):
         phase = cycles([(0, 1.0, 1), (1, 50.0, 1), (0, 1.5, 1), (1, 50.0, 1), (0, 1.0, 1), (1, 53.0, 1)])
-        self.assertEqual([round(us) for us in over_usual_us(phase)], [0, 0, 500, 0, 0, 3000])
-        self.assertEqual(over_own_median_us([2000, 1000, 5000]), [0.0, 0.0, 3.0])
-        self.assertEqual(over_own_median_us([]), [])
+        self.assertEqual(beyond_ms(against_usual(phase)), [0.0, 0.0, 0.5, 0.0, 0.0, 3.0])
+        self.assertEqual(most_stretched(against_usual(phase)), 1.5)
+        self.assertEqual(beyond_ms(against_median([2e6, 1e6, 5e6])), [0.0, 0.0, 3.0])
+        self.assertEqual(most_stretched(against_median([2e6, 1e6, 5e6])), 2.5)
+        self.assertEqual(against_median([]), [])
+        self.assertIsNone(most_stretched([]))
 
     def test_overruns_are_of_those_past_their_deadline(self):
         self.assertEqual(overruns_us(deadlines([(100, 150.0, 2), (100, 99.0, 0), (100, 100.0, 0)])), [50.0])
@@ -110,12 +113,15 @@ class Report(unittest.TestCase):
         lines = headline([cycles([(0, 4.0, 5.0), (0, 4.0, 5.0), (0, 10.0, 7.0)]), deadlines([(100, 1350.0, 2)])])
         self.assertIn("longest 10.00 ms, 100 times inside", lines[0])
         self.assertIn("took 7.00 ms at most", lines[0])
+        self.assertIn("scan's median: 2.50 times, busy loop 1.40, memory loop 1.00", lines[0])
         self.assertIn("1 of 1 searches returned past their deadline, by 1.250 ms", lines[1])
 
     def test_figures_hold_every_part(self):
         figures = all_figures([cycles([(0, 4.0, 5.0), (1, 6.0, 5.0)]), deadlines([(100, 1350.0, 2)])], self.SCENES)
         self.assertEqual(figures["idle"]["cycle_ms"]["max"], 6.0)
         self.assertEqual(figures["idle"]["stages_ms"]["rectify"]["max"], 3.0)
+        self.assertEqual(figures["idle"]["memory_loop_ms"]["median"], 0.5)
+        self.assertEqual(figures["idle"]["cycle_most_stretched"], 1.0)
         self.assertEqual(figures["idle"]["scenes_ms"]["absent"]["samples"], 1)
         self.assertEqual(figures["late"]["overrun_ms"]["max"], 1.25)
 

@@ -36,10 +36,11 @@ class ShortForm(unittest.TestCase):
             self.assertLessEqual(stages, row["total_us"] + 5)
             self.assertLessEqual(row["total_us"], row["cycle_ns"] / 1000 + 1)
             self.assertGreater(row["busy_ns"], 0)
+            self.assertGreater(row["memory_ns"], 0)
             self.assertGreaterEqual(row["wake_ns"], 0)
 
     def test_events_are_counted(self):
-        for part in ["in_cycles", "in_busy_loops"]:
+        for part in ["in_cycles", "in_loops"]:
             for count in self.idle.end[part].values():
                 self.assertGreaterEqual(count, 0)
 
