@@ -27,6 +27,15 @@ foreach(program flatpose_tool flatposed)
   endif()
 endforeach()
 
+# What the daemon's service needs, in their places below the prefix /usr, which the unit names.
+if(TARGET flatposed)
+  set(linux ${PROJECT_SOURCE_DIR}/port/linux)
+  install(FILES ${linux}/examples/flatposed.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/flatpose COMPONENT programs)
+  install(FILES ${linux}/systemd/flatposed.service DESTINATION lib/systemd/system COMPONENT programs)
+  install(FILES ${linux}/systemd/60-flatpose.rules DESTINATION lib/udev/rules.d COMPONENT programs)
+  install(FILES ${linux}/systemd/flatpose.sysusers DESTINATION lib/sysusers.d RENAME flatpose.conf COMPONENT programs)
+endif()
+
 # While the major version is 0 a minor one may break what the last one promised.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/flatposeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/flatposeConfig.cmake.in

@@ -47,22 +47,29 @@ def draw_cycles(axis, phases):
     finish(axis, ncol=3, loc="upper left")
 
 
+def exceeding(axis, samples, low, **style):
+    """Which share of all samples is above a value."""
+    ordered = sorted(max(sample, low) for sample in samples)
+    shares = [1.0 - i / len(ordered) for i in range(len(ordered))]
+    axis.plot(ordered + ordered[-1:], shares + [0.5 / len(ordered)], drawstyle="steps-post", **style)
+
+
 def draw_jitter(axis, phases):
-    low, high = 1e-3, 1.0
-    series = []
+    low = 1e-3
     for phase, color in zip(phases, COLORS):
-        cycles = beyond_ms(against_usual(phase))
         busy = beyond_ms(against_median(phase.column("busy_ns")))
         memory = beyond_ms(against_median(phase.column("memory_ns")))
-        high = max([high] + cycles + busy + memory)
-        series += [(cycles, dict(color=color, label=f"{phase.name}: cycle", linewidth=1.4)),
-                   (busy, dict(color=color, alpha=0.8, linestyle=":", label=f"{phase.name}: busy loop")),
-                   (memory, dict(color=color, alpha=0.6, linestyle="--", linewidth=0.8, label=f"{phase.name}: memory loop"))]
-    for samples, style in series:
-        steps(axis, [value for value in samples if value > 0.0], low, 1.3 * high, 12, **style)
-    axis.set(xscale="log", yscale="log", xlabel="ms", ylabel="count",
-             title="Beyond the median: of the same scan's cycles, and of the loops (the machine's own)")
-    finish(axis, ncol=3, loc="upper left")
+        exceeding(axis, beyond_ms(against_usual(phase)), low, color=color, label=f"{phase.name}: cycle", linewidth=1.8)
+        exceeding(axis, busy, low, color=color, linestyle=":", linewidth=1.2, label=f"{phase.name}: busy loop")
+        exceeding(axis, memory, low, color=color, alpha=0.6, linestyle="--", linewidth=1.0,
+                  label=f"{phase.name}: memory loop")
+    axis.set(xscale="log", yscale="log", xlabel="ms beyond the median", ylabel="share that took longer", xlim=(low, None),
+             title="Beyond the same scan's median, and beyond the loops' (the machine's own)")
+    axis.set_ylim(bottom=axis.get_ylim()[0] / 10.0)  # room for the legend
+    plain(axis.xaxis)
+    plain(axis.yaxis)
+    axis.grid(alpha=0.25)
+    axis.legend(fontsize=8, ncol=3, loc="lower left")
 
 
 def draw_overruns(axis, phases):
