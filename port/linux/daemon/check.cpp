@@ -20,9 +20,10 @@ std::string check_report(const std::string& path, const Config& config, const st
   const std::int64_t memory_bytes = held_bytes(config.search);
   std::string text = port::printable(path, port::kSubjectBytesMax) + ": valid; " +
                      threads_text(config.search) + " on " + cpus_text(config.realtime) + ", " +
-                     std::to_string(memory_bytes / kBytesPerMb) + " MB\n";
+                     std::to_string(memory_bytes / kBytesPerMb) + " MB held, " +
+                     std::to_string(taken_bytes_max(config.search) / kBytesPerMb) + " at most\n";
   const auto list = port::advise(port::read_machine(root), config.realtime,
-                                 config.search.thread_count, memory_bytes);
+                                 config.search.thread_count, taken_bytes_max(config.search));
   for (const port::Advice& advice : list)
     text += "\n" + advice.what + ": " + port::printable(advice.why, port::kReasonBytesMax) +
             "\n  " + advice.command + "\n";

@@ -38,6 +38,8 @@ void read_realtime(Section section, Config& config);
 
 /// What the daemon holds in memory while it runs, stacks and loading apart.
 [[nodiscard]] std::int64_t held_bytes(const SearchConfig& search);
+/// What it may take at most, so that limits and machine should allow it.
+[[nodiscard]] std::int64_t taken_bytes_max(const SearchConfig& search);
 /// "2 search threads"
 [[nodiscard]] std::string threads_text(const SearchConfig& search);
 

@@ -13,6 +13,9 @@ constexpr Range kSides_px{2, 32767};
 constexpr Range kCells{10'000, 16'777'216};
 constexpr Range kScanBytes{1 << 20, std::int64_t{16} << 30};
 
+/// Program, libraries, stacks and what else is in a process.
+constexpr std::int64_t kRest_bytes = 64 << 20;
+
 int small(std::optional<std::int64_t> given, int usual) {
   return static_cast<int>(given.value_or(usual));
 }
@@ -35,6 +38,10 @@ void read_search(Section section, Config& config) {
 std::int64_t held_bytes(const SearchConfig& search) {
   return static_cast<std::int64_t>(locate::Locator::required_bytes(search.limits)) +
          kScanBufferCount * static_cast<std::int64_t>(scan_buffer_bytes(search.limits));
+}
+
+std::int64_t taken_bytes_max(const SearchConfig& search) {
+  return held_bytes(search) + search.max_scan_bytes + kRest_bytes;
 }
 
 std::string threads_text(const SearchConfig& search) {

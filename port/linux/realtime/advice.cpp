@@ -98,6 +98,9 @@ class Adviser {
     for (const int cpu : config_.cpus.empty() ? proposed() : found())
       if (!contains(machine_.isolated, cpu)) open.push_back(cpu);
     if (open.empty() || machine_.online.empty()) return;
+    if (cpus().size() >= machine_.online.size() && !config_.cpus.empty())
+      return add("isolation", "every CPU searches: none is left for everything else",
+                 "threads, cpus   # in the config: one less of each");
     const std::string list = to_cpu_list(open);
     add("isolation", "CPU " + list + " is not isolated: other work runs there too",
         "echo 'GRUB_CMDLINE_LINUX=\"$GRUB_CMDLINE_LINUX isolcpus=" + list + " nohz_full=" + list +
@@ -120,7 +123,7 @@ class Adviser {
     if (*machine_.locked_limit_bytes < 0 || *machine_.locked_limit_bytes >= memory_bytes_) return;
     add("memory lock",
         "this user may lock " + std::to_string(*machine_.locked_limit_bytes / kBytesPerMb) +
-            " MB, a search holds " + std::to_string(memory_bytes_ / kBytesPerMb),
+            " MB, it may take " + std::to_string(memory_bytes_ / kBytesPerMb),
         limit_command("memlock", "unlimited"));
   }
 
@@ -209,7 +212,7 @@ class Adviser {
     const auto& available = machine_.memory_available_bytes;
     if (!available || *available >= memory_bytes_) return;
     add("memory",
-        std::to_string(*available / kBytesPerMb) + " MB are free, a search holds " +
+        std::to_string(*available / kBytesPerMb) + " MB are free, it may take " +
             std::to_string(memory_bytes_ / kBytesPerMb),
         "scan_width_px, scan_height_px, cell_count   # under [search]: as large as needed");
   }

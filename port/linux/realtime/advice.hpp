@@ -16,7 +16,7 @@ struct Advice {
   std::string command;  ///< For a shell, or a line of the config.
 };
 
-/// In the order of what it is worth.  `memory_bytes` is what the process will hold at least.
+/// In the order of what it is worth.  `memory_bytes` is what the process may take.
 [[nodiscard]] std::vector<Advice> advise(const Machine& machine, const RealtimeConfig& config,
                                          int thread_count, std::int64_t memory_bytes);
 

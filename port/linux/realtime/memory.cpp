@@ -46,6 +46,7 @@ Step lock_all_memory() {
   }
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
+  mallopt(M_ARENA_MAX, 1);  // each further one would lock the 64 MB that it reserves
   set_stack_size();
   return {true, what, {}, {}};
 }

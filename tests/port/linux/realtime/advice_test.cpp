@@ -105,6 +105,14 @@ TEST(Advice, NamesCpusThatAreNotIsolated) {
   expect_only(advice_for(machine), "isolation", "isolcpus=2-3");
 }
 
+TEST(Advice, IsolatesNeverAllCpus) {
+  const MadeMachine machine;
+  machine.set("sys/devices/system/cpu/online", "2-3\n");
+  EXPECT_TRUE(advice_for(machine).empty());
+  machine.set("sys/devices/system/cpu/isolated", "\n");
+  expect_only(advice_for(machine), "isolation", "one less of each");
+}
+
 TEST(Advice, NamesCpusThatAreMissingOrNotGiven) {
   const MadeMachine machine;
   RealtimeConfig config = wanted();
