@@ -127,9 +127,9 @@ def headline(phases):
 
 NOTE = """A quantile is the least sample that so many are not above, and "-" where there are too few samples to tell it from the
 greatest. A cycle is one call of locate(), the scan in memory. After each come two loops on as many threads, and a sleep: a
-busy loop, as long as the median cycle, that only counts, and one that reads 8 MB a thread. Scans differ, so what says how
-certain the time is is "beyond the same scan's median", in ms and, under max/median, as the greatest ratio; to be held against
-the loops', which are the machine's own. Who shares memory or a core's arithmetic with others shows in the memory loop only."""
+busy loop, about as long as the median cycle, that only calculates, and one that reads 8 MB a thread. Scans differ, so what
+says how certain the time is is "beyond the same scan's median", in ms and, under max/median, as the greatest ratio; to be held
+against the loops', which are the machine's own: also where two processors are threads of one core, and slow each other down."""
 
 DEADLINE_NOTE = """Each search had between 2 and 98 % of the time that the same scan takes without a deadline. The figures are of
 those that returned past it: how far past, in ms. A search that ends early with a verified match says `deadline`."""

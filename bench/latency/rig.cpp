@@ -101,6 +101,21 @@ struct Rig::Hands {
     for_each_chunk(pool, thread_count, body);
   }
 
+  /// Steps of spin_on_all() that take about this long, found by trying.
+  std::int64_t spin_steps_for(std::int64_t time_ns) noexcept {
+    constexpr int kTries = 12;
+    std::int64_t step_count = 10'000;
+    for (int i = 0; i < kTries; ++i) {
+      const std::int64_t start_ns = now_ns();
+      spin_on_all(step_count);
+      const double taken_ns = static_cast<double>(std::max<std::int64_t>(now_ns() - start_ns, 1));
+      // Half of what the last try says, so that one that was held up decides little.
+      const double ratio = std::clamp(static_cast<double>(time_ns) / taken_ns, 0.5, 8.0);
+      step_count =
+          static_cast<std::int64_t>(static_cast<double>(step_count) * 0.5 * (1.0 + ratio)) + 1;
+    }
+    return step_count;
+  }
   void sweep_on_all() noexcept {
     const std::size_t share = swept.size() / static_cast<std::size_t>(thread_count);
     auto body = [&](int i) {
@@ -189,7 +204,7 @@ CycleRun Rig::run_cycles(int thread_count, double seconds) {
     Hands hands(thread_count, config_.realtime);
     std::vector<std::int64_t> usual_us = usual_times_us(hands.pool);  // and warm
     std::nth_element(usual_us.begin(), usual_us.begin() + usual_us.size() / 2, usual_us.end());
-    const std::int64_t busy_steps = spin_steps_for(1000 * usual_us[usual_us.size() / 2]);
+    const std::int64_t busy_steps = hands.spin_steps_for(1000 * usual_us[usual_us.size() / 2]);
     hands.spin_on_all(busy_steps);
     hands.sweep_on_all();
     Order order(shots_.size());
