@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace flatpose::job {
 namespace {
-
-constexpr std::int64_t kNever_us = std::numeric_limits<std::int64_t>::max();
 
 constexpr JobRule kNoJob{.job = 0};
 

@@ -37,5 +37,6 @@ using Action = std::function<ExitCode(Report&)>;
 [[nodiscard]] Action add_align(CLI::App& app);
 [[nodiscard]] Action add_info(CLI::App& app);
 [[nodiscard]] Action add_simulate(CLI::App& app);
+[[nodiscard]] Action add_map(CLI::App& app);
 
 }  // namespace flatpose::tool

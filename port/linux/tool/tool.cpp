@@ -26,6 +26,7 @@ constexpr Command kCommands[] = {
     {"align", "find the work plane in a scan", add_align},
     {"info", "what a file is and holds", add_info},
     {"simulate", "make a scan whose truth is known", add_simulate},
+    {"map", "the registers that a PLC reads and writes", add_map},
 };
 
 // What stands on the line that no option or command takes; CLI11 complains of something missing

@@ -1,0 +1,132 @@
+// flatpose map: every form is the table's, and the copies in the tree are the tool's.
+
+#include <fstream>
+#include <set>
+
+#include "flatpose/result_map/table.hpp"
+#include "port/linux/tool/map_text.hpp"
+#include "tests/port/linux/tool/workbench.hpp"
+
+extern "C" int flatpose_registers_in_c(int which);
+
+namespace flatpose::tool {
+namespace {
+
+std::string file_in_tree(const std::string& name) {
+  std::ifstream file(std::string(FLATPOSE_SOURCE_DIR) + "/docs/" + name);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(MapCommand, CopiesInTheTreeAreWhatItPrints) {
+  struct Copy {
+    const char* format;
+    const char* file;
+  };
+  for (const Copy& copy :
+       {Copy{"markdown", "registers.md"}, Copy{"st", "plc/FB_Flatpose.st"},
+        Copy{"scl", "plc/FB_Flatpose.scl"}, Copy{"c", "plc/flatpose_registers.h"}}) {
+    const Ran ran = run({"map", "--format", copy.format});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.out, file_in_tree(copy.file))
+        << "flatpose map --format " << copy.format << " > docs/" << copy.file;
+  }
+}
+
+TEST(MapCommand, JsonIsTheTable) {
+  const json list = json::parse(run({"map", "--format", "json"}).out);
+  ASSERT_EQ(list.size(), result_map::entries().size());
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const result_map::Entry& entry = result_map::entries()[i];
+    EXPECT_TRUE(names.insert(list[i].at("name")).second) << list[i].at("name");
+    EXPECT_EQ(list[i].at("address"), entry.address);
+    EXPECT_EQ(list[i].at("words"), entry.words());
+    EXPECT_EQ(list[i].at("scale"), entry.scale);
+    EXPECT_EQ(list[i].at("table"),
+              entry.table == result_map::Table::kHolding ? "holding" : "input");
+    EXPECT_EQ(list[i].at("can").at("index"), entry.can_index);
+    EXPECT_TRUE(list[i].at("can").at("subindex").is_number());
+    for (const char* key : {"type", "unit", "values", "doc"}) EXPECT_TRUE(list[i].contains(key));
+    if (list[i].at("name") == "status") {
+      EXPECT_EQ(list[i].at("values").at("0"), "ok");
+      EXPECT_EQ(list[i].at("values").at("-1"), "no_match");
+    }
+    if (list[i].at("name") == "rotation_1") {
+      EXPECT_EQ(list[i].at("scale_by_convention").at("ur_rotation_vector"), 1e-6);
+    }
+  }
+  for (const char* name : {"command_number", "position_x_f", "further_8_number_tail"})
+    EXPECT_EQ(names.count(name), 1U) << name;
+}
+
+TEST(MapCommand, CsvHasALineAnEntryAndAsManyFields) {
+  const std::string text = run({"map", "--format", "csv"}).out;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')),
+            result_map::entries().size() + 1);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    bool is_inside = false;
+    int commas = 0;
+    for (const char c : line) {
+      if (c == '"') is_inside = !is_inside;
+      if (c == ',' && !is_inside) ++commas;
+    }
+    EXPECT_EQ(commas, 10) << line;
+    EXPECT_FALSE(is_inside);
+  }
+}
+
+TEST(MapCommand, TheHeaderIsC) {
+  EXPECT_EQ(flatpose_registers_in_c(0), 0);
+  EXPECT_EQ(flatpose_registers_in_c(1), 101);
+  EXPECT_EQ(flatpose_registers_in_c(2), -1);
+  EXPECT_EQ(flatpose_registers_in_c(3), 16);
+  EXPECT_EQ(flatpose_registers_in_c(4), 7);
+}
+
+// No compiler for it is at hand: at least blocks close, and all that is used is declared.
+TEST(MapCommand, FunctionBlocksCloseWhatTheyOpenAndDeclareWhatTheyUse) {
+  for (const PlcDialect dialect : {PlcDialect::kCodesys, PlcDialect::kScl}) {
+    std::istringstream text(map_function_block(dialect));
+    int depth = 0, parentheses = 0;
+    bool is_code = false;
+    std::set<std::string> declared, used;
+    for (std::string line; std::getline(text, line);) {
+      line = line.substr(0, line.find("//"));
+      std::istringstream words(line);
+      std::string first, second;
+      words >> first >> second;
+      if (first == "IF") ++depth;
+      if (first == "END_IF;") --depth;
+      ASSERT_GE(depth, 0);
+      const bool is_local = std::islower(static_cast<unsigned char>(first.c_str()[0]));
+      if (!is_code && is_local && (second == ":" || second == "{InstructionName"))
+        declared.insert(first);
+      if (first == "END_VAR" && declared.count("uiNumber")) is_code = true;
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '(') ++parentheses;
+        if (line[i] == ')') --parentheses;
+        const bool starts = std::islower(static_cast<unsigned char>(line[i])) &&
+                            (i == 0 || !std::isalnum(static_cast<unsigned char>(line[i - 1])));
+        if (!is_code || !starts || (i > 0 && (line[i - 1] == '_' || line[i - 1] == '.'))) continue;
+        std::size_t end = i;
+        while (end < line.size() && std::isalnum(static_cast<unsigned char>(line[end]))) ++end;
+        used.insert(line.substr(i, end - i));
+      }
+    }
+    EXPECT_EQ(depth, 0);
+    EXPECT_EQ(parentheses, 0);
+    EXPECT_GT(used.size(), 20U);
+    for (const std::string& name : used) EXPECT_TRUE(declared.count(name)) << name;
+    for (const std::string& name : declared) EXPECT_TRUE(used.count(name)) << name;
+  }
+}
+
+TEST(MapCommand, RefusesWhatItCannotPrint) {
+  expect_refused(run({"map", "--format", "eds"}), 2, "CAN");
+  expect_refused(run({"map", "--format", "dbc"}), 2, "CAN");
+  expect_refused(run({"map", "--format", "xml"}), 2, "xml");
+}
+
+}  // namespace
+}  // namespace flatpose::tool
