@@ -18,6 +18,7 @@ const char* to_string(Status status) noexcept {
     case Status::kBadVersion: return "written by a newer version";
     case Status::kBadChecksum: return "checksum does not match";
     case Status::kTruncated: return "truncated";
+    case Status::kStopped: return "stopped before it was done";
   }
   return "unknown status";
 }

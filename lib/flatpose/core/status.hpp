@@ -20,6 +20,7 @@ enum class [[nodiscard]] Status{
     kBadVersion,    ///< Written by a newer version.
     kBadChecksum,   ///< Bytes were changed since it was written.
     kTruncated,     ///< Fewer bytes than the header promises.
+    kStopped,       ///< The budget was over before the work was done.
 };
 
 /// The enumerator's name in words, for logs.

@@ -99,18 +99,19 @@ struct Views {
 class TopFinder {
  public:
   TopFinder(const Views& views, const Thresholds& thresholds, VectorPath path,
-            ChunkScratch& scratch, std::span<EdgePoint> tops) noexcept
+            ChunkScratch& scratch, std::span<EdgePoint> tops, const Budget& budget) noexcept
       : v_(views),
         t_(thresholds),
         path_(path),
         kernels_(row_kernels(path)),
         scratch_(scratch),
-        tops_(tops) {}
+        tops_(tops),
+        budget_(budget) {}
 
   /// Appends them to `tops` and marks their cells. Returns how many there are, also when there is
   /// no room for all.
   std::size_t run(int row_begin, int row_end) noexcept {
-    for (int begin = row_begin; begin < row_end; begin += kBandRows)
+    for (int begin = row_begin; begin < row_end && !budget_.is_over(); begin += kBandRows)
       run_band(begin, std::min(begin + kBandRows, row_end));
     return count_;
   }
@@ -126,7 +127,7 @@ class TopFinder {
                          path_);
     const JumpField field(v_.filled_mm, v_.missing, scratch_.slopes);
     batch_.count = 0;
-    for (int y = begin; y < end; ++y) {
+    for (int y = begin; y < end && !budget_.is_over_at(y); ++y) {
       mark(y);
       for_each_set(scratch_.marks.data(), w, [&](int x) {
         if (batch_.count == JumpBatch::kCountMax) flush(field);
@@ -202,6 +203,7 @@ class TopFinder {
   const RowKernels& kernels_;
   ChunkScratch& scratch_;
   std::span<EdgePoint> tops_;
+  const Budget& budget_;
   std::size_t count_ = 0;
   JumpBatch batch_;
   std::array<std::uint8_t, JumpBatch::kCountMax> may_be_;
@@ -213,28 +215,33 @@ class TopLists {
   TopLists(const Views& views, const EdgeScratch& scratch) noexcept
       : chunks_(views.marks.height_px, kBandRows), views_(views), scratch_(scratch) {}
 
-  /// False when there are more than there is room for.
-  [[nodiscard]] bool find(const Thresholds& thresholds, VectorPath path,
-                          Executor& executor) noexcept {
+  /// Fails: kTooLarge when there are more than there is room for, kStopped.
+  [[nodiscard]] Status find(const Thresholds& thresholds, VectorPath path,
+                            const Budget& budget) noexcept {
     Slots slots;
     auto body = [&](int chunk) {
       const int slot = slots.take();
       ChunkScratch scratch = scratch_.chunks[static_cast<std::size_t>(slot)];
-      TopFinder finder(views_, thresholds, path, scratch, room(chunk));
+      TopFinder finder(views_, thresholds, path, scratch, room(chunk), budget);
       counts_[static_cast<std::size_t>(chunk)] =
           finder.run(chunks_.begin(chunk), chunks_.end(chunk));
       slots.give_back(slot);
     };
-    for_each_chunk(executor, chunks_.count(), body);
+    if (!for_each_chunk(budget, chunks_.count(), body)) return Status::kStopped;
     for (int i = 0; i < chunks_.count(); ++i) {
-      if (counts_[static_cast<std::size_t>(i)] > room(i).size()) return false;
+      if (counts_[static_cast<std::size_t>(i)] > room(i).size()) return Status::kTooLarge;
     }
-    return true;
+    return Status::kOk;
   }
 
-  void keep_connected() noexcept {
-    for_each([this](const EdgePoint& top) {
-      if ((mark_of(top) & kStrongMark) != 0)
+  void keep_connected(const Budget& budget) noexcept {
+    int until_look = 0;
+    for_each([&](const EdgePoint& top) {
+      if (--until_look < 0) {
+        until_look = kPointsPerLook;
+        (void)budget.is_over();
+      }
+      if ((mark_of(top) & kStrongMark) != 0 && !budget.was_over())
         image::keep_connected(views_.marks, top.column, top.row, scratch_.stack);
     });
   }
@@ -302,7 +309,7 @@ void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept {
 Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::uint8_t> missing,
                          double cell_mm, const EdgeConfig& config, Arena& scratch,
                          ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out,
-                         VectorPath path, Executor& executor) noexcept {
+                         VectorPath path, const Budget& budget) noexcept {
   const Status valid = validate(config);
   if (valid != Status::kOk) return valid;
   if (!(cell_mm > 0.0) || !(cell_mm < 1e6)) return Status::kInvalidArgument;
@@ -325,8 +332,9 @@ Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::
                               config.crease_high_rad > 0.0F};
   const Views views{filled_mm, missing, kind_out};
   TopLists lists(views, s);
-  if (!lists.find(thresholds, path, executor)) return Status::kTooLarge;
-  lists.keep_connected();
+  if (const Status found = lists.find(thresholds, path, budget); found != Status::kOk) return found;
+  lists.keep_connected(budget);
+  if (budget.was_over()) return Status::kStopped;
   return lists.collect(config.jump_low_mm, out);
 }
 

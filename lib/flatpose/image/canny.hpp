@@ -23,7 +23,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/status.hpp"
@@ -62,11 +62,11 @@ void reserve_edge_scratch(Arena& arena, int width_px, int height_px) noexcept;
 /// 1 us an edge. Memory: `scratch`, given back. Fails: kInvalidArgument (config, cell_mm),
 /// kShapeMismatch, kOutOfMemory; kTooLarge when a side is beyond kEdgeMapSizeMax_px, when more than
 /// half of all cells are tops of ridges, or when `out` is full: then `out` holds the first edges
-/// and `kind_out` all.  Thread: reentrant; rows are shared out over `executor`.
+/// and `kind_out` all.  Thread: reentrant; rows are shared out over `budget`.
 Result<int> detect_edges(ImageView<const float> filled_mm, ImageView<const std::uint8_t> missing,
                          double cell_mm, const EdgeConfig& config, Arena& scratch,
                          ImageView<std::uint8_t> kind_out, std::span<EdgePoint> out,
                          VectorPath path = VectorPath::kPortable,
-                         Executor& executor = callers_thread) noexcept;
+                         const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::image

@@ -50,8 +50,8 @@ bool is_firm(const std::uint8_t* first, std::ptrdiff_t step, int count) noexcept
 
 void mark_level_rows(const DarkPitScratch& s, ImageView<const std::uint8_t> missing,
                      ImageView<const float> filled_mm, int side_min_px, float level_mm,
-                     const RowKernels& kernels) noexcept {
-  for (int y = 0; y < missing.height_px; ++y) {
+                     const RowKernels& kernels, const Budget& budget) noexcept {
+  for (int y = 0; y < missing.height_px && !budget.is_over_at(y); ++y) {
     const std::uint8_t* row = missing.row(y);
     const float* z_mm = filled_mm.row(y);
     std::uint8_t* mark = s.marks.row(y);
@@ -78,8 +78,9 @@ bool is_firm_run(ImageView<const std::uint8_t> missing, int x, int begin, int en
 // Where rows and columns agree there may be a pit. Each run of a column is judged once, from the
 // first of its cells that is marked.
 void mark_level_columns(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
-                        int side_min_px, float level_mm, ImageView<std::uint8_t> marks) noexcept {
-  for (int y = 0; y < missing.height_px; ++y) {
+                        int side_min_px, float level_mm, ImageView<std::uint8_t> marks,
+                        const Budget& budget) noexcept {
+  for (int y = 0; y < missing.height_px && !budget.is_over_at(y); ++y) {
     for_each_set(marks.row(y), missing.width_px, [&](int x) {
       if (marks(x, y) != kLevelRow) return;
       int begin = y;
@@ -108,15 +109,15 @@ void note_rows_with_pits(const DarkPitScratch& s) noexcept {
 // A shadow lies beside what casts it: where a diagonal (dx, 1) of missing cells ends at something
 // higher, they are in no pit but in `shadow`. It is judged once, from the first pit on it.
 void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float> filled_mm,
-                   float level_mm, int dx, std::uint8_t shadow,
-                   ImageView<std::uint8_t> marks) noexcept {
+                   float level_mm, int dx, std::uint8_t shadow, ImageView<std::uint8_t> marks,
+                   const Budget& budget) noexcept {
   const auto is_missing = [&](int x, int y) {
     return missing.contains(x, y) && missing(x, y) != 0;
   };
   const auto height_mm = [&](int x, int y) {
     return missing.contains(x, y) ? filled_mm(x, y) : -std::numeric_limits<float>::infinity();
   };
-  for (int y = 0; y < missing.height_px; ++y) {
+  for (int y = 0; y < missing.height_px && !budget.is_over_at(y); ++y) {
     for_each_set(marks.row(y), missing.width_px, [&](int x) {
       if (marks(x, y) != kPit) return;
       const auto mark = [&](int i) -> std::uint8_t& { return marks(x + i * dx, y + i); };
@@ -141,7 +142,8 @@ void clear_shadows(ImageView<const std::uint8_t> missing, ImageView<const float>
 // Lowers what lies in a square of pits as large as none is by accident. The largest square that
 // ends in a cell is one more than the smallest of those that end to its left, above, and between.
 void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
-                   ImageView<std::uint8_t> missing, ImageView<float> filled_mm) noexcept {
+                   ImageView<std::uint8_t> missing, ImageView<float> filled_mm,
+                   const Budget& budget) noexcept {
   const auto lower = [&](int end_x, int end_y) {
     for (int y = end_y - side_min_px + 1; y <= end_y; ++y) {
       for (int x = end_x - side_min_px + 1; x <= end_x; ++x) {
@@ -157,7 +159,7 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
   std::uint8_t* here_px = above_px + width;
   std::fill(s.side_px.begin(), s.side_px.end(), std::uint8_t{0});
   bool above_is_empty = true;
-  for (int y = 0; y < missing.height_px; ++y) {
+  for (int y = 0; y < missing.height_px && !budget.is_over_at(y); ++y) {
     const bool is_empty = s.has_pit[static_cast<std::size_t>(y)] == 0;
     if (is_empty && above_is_empty) continue;
     above_is_empty = is_empty;
@@ -176,7 +178,7 @@ void lower_squares(const DarkPitScratch& s, int side_min_px, float drop_mm,
 // What adjoins a pit and could be one belongs to it: the tips of the gap between three that touch
 // are narrower than any square. Sweeps down and up reach as far as the gap turns back twice.
 void lower_adjoining(const DarkPitScratch& s, float drop_mm, ImageView<std::uint8_t> missing,
-                     ImageView<float> filled_mm) noexcept {
+                     ImageView<float> filled_mm, const Budget& budget) noexcept {
   const ImageView<const std::uint8_t> marks = s.marks;
   const auto is_lowered = [&](int x, int y) {
     return missing.contains(x, y) && missing(x, y) == kDarkPit;
@@ -192,12 +194,12 @@ void lower_adjoining(const DarkPitScratch& s, float drop_mm, ImageView<std::uint
   constexpr int kRoundCount = 2;
   for (int round = 0; has_grown && round < kRoundCount; ++round) {
     has_grown = false;
-    for (int y = 0; y < missing.height_px; ++y) {
+    for (int y = 0; y < missing.height_px && !budget.is_over_at(y); ++y) {
       if (s.has_pit[static_cast<std::size_t>(y)] == 0) continue;
       for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, -1); });
       for_each_set_backward(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, 1, -1); });
     }
-    for (int y = missing.height_px - 1; y >= 0; --y) {
+    for (int y = missing.height_px - 1; y >= 0 && !budget.is_over_at(y); --y) {
       if (s.has_pit[static_cast<std::size_t>(y)] == 0) continue;
       for_each_set(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, -1, 1); });
       for_each_set_backward(marks.row(y), marks.width_px, [&](int x) { adjoin(x, y, 1, 1); });
@@ -212,7 +214,7 @@ void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcep
 }
 
 Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<std::uint8_t> missing,
-                       ImageView<float> filled_mm, VectorPath path) noexcept {
+                       ImageView<float> filled_mm, VectorPath path, const Budget& budget) noexcept {
   if (!same_shape(missing, filled_mm)) return Status::kShapeMismatch;
   if (!(config.level_mm > 0.0F) || !(config.drop_mm > config.level_mm))
     return Status::kInvalidArgument;
@@ -222,14 +224,15 @@ Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch, ImageView<st
   if (scratch.failed()) return Status::kOutOfMemory;
 
   const int side_min_px = accidental_side_px(missing, kSideMin_px, path);
-  mark_level_rows(s, missing, filled_mm, side_min_px, config.level_mm, row_kernels(path));
-  mark_level_columns(missing, filled_mm, side_min_px, config.level_mm, s.marks);
-  clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks);
-  clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks);
+  mark_level_rows(s, missing, filled_mm, side_min_px, config.level_mm, row_kernels(path), budget);
+  mark_level_columns(missing, filled_mm, side_min_px, config.level_mm, s.marks, budget);
+  clear_shadows(missing, filled_mm, config.level_mm, 1, kShadowFalling, s.marks, budget);
+  clear_shadows(missing, filled_mm, config.level_mm, -1, kShadowRising, s.marks, budget);
+  if (budget.was_over()) return Status::kStopped;
   note_rows_with_pits(s);
-  lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm);
-  lower_adjoining(s, config.drop_mm, missing, filled_mm);
-  return Status::kOk;
+  lower_squares(s, side_min_px, config.drop_mm, missing, filled_mm, budget);
+  lower_adjoining(s, config.drop_mm, missing, filled_mm, budget);
+  return budget.was_over() ? Status::kStopped : Status::kOk;
 }
 
 }  // namespace flatpose::image

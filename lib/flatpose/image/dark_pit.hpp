@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
@@ -31,6 +32,7 @@ void reserve_dark_pit_scratch(Arena& arena, int width_px, int height_px) noexcep
 /// reentrant.
 [[nodiscard]] Status lower_dark_pits(const DarkPitConfig& config, Arena& scratch,
                                      ImageView<std::uint8_t> missing, ImageView<float> filled_mm,
-                                     VectorPath path = VectorPath::kPortable) noexcept;
+                                     VectorPath path = VectorPath::kPortable,
+                                     const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::image

@@ -74,7 +74,8 @@ bool goes_by_rows(std::span<const EdgePoint> edges) noexcept {
 }  // namespace
 
 Status edge_distances(std::span<const EdgePoint> edges, const ChannelConfig& config,
-                      const OctantImage& distance_third_px, VectorPath path) noexcept {
+                      const OctantImage& distance_third_px, VectorPath path,
+                      const Budget& budget) noexcept {
   if (!is_valid(config) || !goes_by_rows(edges)) return Status::kInvalidArgument;
   const ImageView<OctantCell>& cells = distance_third_px.cells;
   if (cells.empty()) return Status::kOk;
@@ -84,15 +85,15 @@ Status edge_distances(std::span<const EdgePoint> edges, const ChannelConfig& con
   const RowKernels& kernels = row_kernels(path);
   // A row without one before it is its own: four to the next cell and three to itself shorten
   // nothing that three to the next would not.
-  for (int y = 0; y <= last; ++y) {
+  for (int y = 0; y <= last && !budget.is_over_at(y); ++y) {
     std::memset(cells.row(y), config.distance_max_third_px,
                 sizeof(OctantCell) * static_cast<std::size_t>(w));
     pen.draw_row(y, w, cells.row(y));
     kernels.shorten_forward(cells.row(y > 0 ? y - 1 : y), w, cells.row(y));
   }
-  for (int y = last; y >= 0; --y)
+  for (int y = last; y >= 0 && !budget.is_over_at(y); --y)
     kernels.shorten_backward(cells.row(y < last ? y + 1 : y), w, cells.row(y));
-  return Status::kOk;
+  return budget.was_over() ? Status::kStopped : Status::kOk;
 }
 
 }  // namespace flatpose::image

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/maths.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
@@ -37,7 +38,7 @@ struct ChannelConfig {
 /// Cost: two passes, linear in cells plus edges.  Memory: none.
 /// Fails: kInvalidArgument (config, order of the edges).  Thread: reentrant.
 Status edge_distances(std::span<const EdgePoint> edges, const ChannelConfig& config,
-                      const OctantImage& distance_third_px,
-                      VectorPath path = VectorPath::kPortable) noexcept;
+                      const OctantImage& distance_third_px, VectorPath path = VectorPath::kPortable,
+                      const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::image

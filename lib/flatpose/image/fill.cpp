@@ -56,7 +56,7 @@ void reserve_fill_scratch(Arena& arena, int width_px) noexcept { (void)take_rows
 
 Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm,
                     ImageView<std::uint8_t> missing, Arena& scratch, VectorPath path,
-                    Executor& executor) noexcept {
+                    const Budget& budget) noexcept {
   if (!same_shape(height_mm, filled_mm) || !same_shape(height_mm, missing)) {
     return Status::kShapeMismatch;
   }
@@ -77,13 +77,13 @@ Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm
   auto fill_from_above = [&](int chunk) {
     const int x = chunks.begin(chunk);
     bool any = false;
-    for (int y = 0; y < h; ++y) {
+    for (int y = 0; y < h && !budget.is_over_at(y); ++y) {
       any |= kernels.carry_down(height_mm.row(y) + x, chunks.end(chunk) - x, carried + x,
                                 lowest_mm + x, filled_mm.row(y) + x, missing.row(y) + x);
     }
     any_missing[static_cast<std::size_t>(chunk)] = any;
   };
-  for_each_chunk(executor, chunks.count(), fill_from_above);
+  if (!for_each_chunk(budget, chunks.count(), fill_from_above)) return Status::kStopped;
   if (std::find(any_missing.begin(), any_missing.end(), true) == any_missing.end())
     return Status::kOk;
   const float floor_mm = *std::min_element(lowest_mm, lowest_mm + w);
@@ -92,12 +92,12 @@ Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm
   auto fill_from_below = [&](int chunk) {
     const Columns columns{chunks.begin(chunk), chunks.end(chunk)};
     const int x = columns.begin;
-    for (int y = h - 1; y >= 0; --y) {
+    for (int y = h - 1; y >= 0 && !budget.is_over_at(y); --y) {
       take_lowest(missing.row(y), w, columns, carried, found ? floor_mm : 0.0F, filled_mm.row(y));
       kernels.carry_up(missing.row(y) + x, filled_mm.row(y) + x, columns.end - x, carried + x);
     }
   };
-  for_each_chunk(executor, chunks.count(), fill_from_below);
+  if (!for_each_chunk(budget, chunks.count(), fill_from_below)) return Status::kStopped;
   return found ? Status::kOk : Status::kTooFewPoints;
 }
 

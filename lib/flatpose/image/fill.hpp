@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
@@ -22,10 +22,10 @@ void reserve_fill_scratch(Arena& arena, int width_px) noexcept;
 /// Shape: all alike; `filled_mm` may be `height_mm` itself.  Units: mm.
 /// Cost: two passes, linear in cells.  Memory: two rows of `scratch`, given back.
 /// Fails: kShapeMismatch, kOutOfMemory; kTooFewPoints when nothing is valid: all cells are then 0
-/// and missing.  Thread: reentrant; columns are shared out over `executor`.
+/// and missing.  Thread: reentrant; columns are shared out over `budget`.
 Status fill_missing(ImageView<const float> height_mm, ImageView<float> filled_mm,
                     ImageView<std::uint8_t> missing, Arena& scratch,
                     VectorPath path = VectorPath::kPortable,
-                    Executor& executor = callers_thread) noexcept;
+                    const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::image

@@ -41,14 +41,15 @@ Scratches take_scratches(Arena& arena, const rectify::Grid& coarse) noexcept {
 class Features {
  public:
   Features(const scene::Scene& scene, const Settings& settings, const Scratches& scratches,
-           Workspace& work) noexcept
+           const Budget& budget, Workspace& work) noexcept
       : scene_(scene),
         settings_(settings),
         scratches_(scratches),
+        budget_(budget),
         work_(work),
         normal_rows_(scene.filled_mm.height_px, kBlock_px) {}
 
-  [[nodiscard]] Status run(Executor& executor) noexcept {
+  [[nodiscard]] Status run() noexcept {
     if (const Status s = refine::begin_fine_images(scene_, work_.fine); s != Status::kOk) return s;
     if (const Status s = search::begin_search_images(settings_.search_images, work_.coarse);
         s != Status::kOk) {
@@ -58,7 +59,8 @@ class Features {
       if (part >= kFineNormals) return write_normals(part - kFineNormals);
       statuses_[static_cast<std::size_t>(part)] = run_part(static_cast<Part>(part));
     };
-    for_each_chunk(executor, kFineNormals + normal_rows_.count(), body);
+    if (!for_each_chunk(budget_, kFineNormals + normal_rows_.count(), body))
+      return Status::kStopped;
     image::close_normals(work_.fine.normal_x, work_.fine.normal_y);
     for (const Status s : statuses_) {
       if (s != Status::kOk) return s;
@@ -70,33 +72,41 @@ class Features {
  private:
   [[nodiscard]] Status run_part(Part part) noexcept {
     switch (part) {
-      case kFineDistances: return refine::write_fine_distances(scene_, work_.fine);
+      case kFineDistances: return refine::write_fine_distances(scene_, work_.fine, budget_);
       case kCoarseSurface: return build_surface();
       case kCoarseEdges:
         for (int y = 0; y < work_.claimed.height_px; ++y)
           std::fill_n(work_.claimed.row(y), work_.claimed.width_px, std::uint8_t{0});
-        return search::write_edge_costs(scene_, scratches_.edges, work_.coarse);
+        return search::write_edge_costs(scene_, scratches_.edges, work_.coarse, budget_);
       default: return Status::kOk;
     }
   }
 
   void write_normals(int chunk) noexcept {
-    image::write_normals(scene_.filled_mm, work_.fine.grid.cell_mm, work_.fine.normal_x,
-                         work_.fine.normal_y, normal_rows_.begin(chunk), normal_rows_.end(chunk),
-                         scene_.vector_path);
+    const int end = normal_rows_.end(chunk);
+    for (int row = normal_rows_.begin(chunk); row < end && !budget_.is_over();
+         row += kRowsPerLook) {
+      image::write_normals(scene_.filled_mm, work_.fine.grid.cell_mm, work_.fine.normal_x,
+                           work_.fine.normal_y, row, std::min(row + kRowsPerLook, end),
+                           scene_.vector_path);
+    }
   }
 
   [[nodiscard]] Status build_surface() noexcept {
     search::SearchImages& coarse = work_.coarse;
     Arena& scratch = scratches_.surface;
-    Status s = search::halve_heights(scene_, settings_.verify.height_tolerance_mm, scratch, coarse);
+    Status s = search::halve_heights(scene_, settings_.verify.height_tolerance_mm, scratch, coarse,
+                                     budget_);
     if (s != Status::kOk) return s;
     s = search::fit_tilt_field(coarse.filled_mm, coarse.grid.cell_mm, settings_.tilt_radius_px,
-                               scratch, work_.tilt, settings_.places.stride_px, scene_.vector_path);
+                               scratch, work_.tilt, settings_.places.stride_px, scene_.vector_path,
+                               budget_);
     if (s != Status::kOk) return s;
     s = search::collect_places(work_.tilt, settings_.places, work_.places);
     if (s != Status::kOk) return s;
+    if (budget_.is_over()) return Status::kStopped;
     s = search::write_surface(work_.places.range, scratch, coarse);
+    if (budget_.is_over()) return Status::kStopped;
     if (s == Status::kOk) search::set_heights(work_.tilt, coarse, work_.places);
     return s;
   }
@@ -104,6 +114,7 @@ class Features {
   const scene::Scene& scene_;
   const Settings& settings_;
   Scratches scratches_;
+  const Budget& budget_;
   Workspace& work_;
   rectify::RowChunks normal_rows_;
   std::array<Status, kFineNormals> statuses_{};
@@ -116,11 +127,11 @@ void reserve_feature_scratch(Arena& arena, const rectify::Grid& fine) noexcept {
 }
 
 Status build_features(const scene::Scene& scene, const Settings& settings, Arena& scratch,
-                      Executor& executor, Workspace& work) noexcept {
+                      const Budget& budget, Workspace& work) noexcept {
   const ArenaScope scope(scratch);
   const Scratches scratches = take_scratches(scratch, work.coarse.grid);
   if (scratch.failed()) return Status::kOutOfMemory;
-  return Features(scene, settings, scratches, work).run(executor);
+  return Features(scene, settings, scratches, budget, work).run();
 }
 
 }  // namespace flatpose::locate

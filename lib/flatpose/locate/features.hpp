@@ -2,7 +2,7 @@
 // The stage between scene and search: what refinement and search read of a scene. Its parts touch
 // different images and are shared out.
 
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/locate/settings.hpp"
 #include "flatpose/locate/workspace.hpp"
@@ -14,8 +14,8 @@ void reserve_feature_scratch(Arena& arena, const rectify::Grid& fine) noexcept;
 
 /// Fills the fine and coarse images, tilts and places of `work`; nothing is claimed yet.
 /// Memory: `scratch`, given back.  Fails: as what it calls.  Thread: reentrant; shared out over
-/// `executor`.
+/// `budget`.
 [[nodiscard]] Status build_features(const scene::Scene& scene, const Settings& settings,
-                                    Arena& scratch, Executor& executor, Workspace& work) noexcept;
+                                    Arena& scratch, const Budget& budget, Workspace& work) noexcept;
 
 }  // namespace flatpose::locate

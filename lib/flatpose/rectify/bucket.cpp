@@ -45,9 +45,9 @@ std::int32_t cell_index(const ScanRow& row, int c, const Grid& grid) noexcept {
 
 /// Finds each pixel's cell and lets begin[cell + 1] count them, then sum up.
 void count_cells(const RangeImageView& scan, const ScanToGrid& to_grid, const Grid& grid,
-                 const Buffers& b) noexcept {
+                 const Buffers& b, const Budget& budget) noexcept {
   std::fill(b.begin.begin(), b.begin.end(), 0);
-  for (int r = 0; r < scan.height_px; ++r) {
+  for (int r = 0; r < scan.height_px && !budget.is_over_at(r); ++r) {
     kPortableRowKernels.transform_row(to_grid, scan, r, b.row);
     std::int32_t* const cells = b.cell.data() + static_cast<std::ptrdiff_t>(r) * scan.width_px;
     for (int c = 0; c < scan.width_px; ++c) {
@@ -59,9 +59,10 @@ void count_cells(const RangeImageView& scan, const ScanToGrid& to_grid, const Gr
 }
 
 /// Puts each point with its cell. begin[cell] moves to the cell's end, the next one's begin.
-void scatter(const RangeImageView& scan, const ScanToGrid& to_grid, const Buffers& b) noexcept {
+void scatter(const RangeImageView& scan, const ScanToGrid& to_grid, const Buffers& b,
+             const Budget& budget) noexcept {
   std::int32_t source = 0;
-  for (int r = 0; r < scan.height_px; ++r) {
+  for (int r = 0; r < scan.height_px && !budget.is_over_at(r); ++r) {
     kPortableRowKernels.transform_row(to_grid, scan, r,
                                       b.row);  // cheaper again than keeping every height
     for (int c = 0; c < scan.width_px; ++c, ++source) {
@@ -71,10 +72,10 @@ void scatter(const RangeImageView& scan, const ScanToGrid& to_grid, const Buffer
   }
 }
 
-void write_medians(const Buffers& b, const HeightMap& out) noexcept {
+void write_medians(const Buffers& b, const HeightMap& out, const Budget& budget) noexcept {
   std::int32_t begin = 0;
   std::int32_t cell = 0;
-  for (int y = 0; y < out.grid.height_px; ++y) {
+  for (int y = 0; y < out.grid.height_px && !budget.is_over_at(y); ++y) {
     for (int x = 0; x < out.grid.width_px; ++x, ++cell) {
       const std::int32_t end = b.begin[cell];
       if (end > begin) {
@@ -99,7 +100,7 @@ std::size_t bucket_required_bytes(int scan_width_px, int scan_height_px,
 }
 
 Status bucket(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratch,
-              const HeightMap& out) noexcept {
+              const HeightMap& out, const Budget& budget) noexcept {
   if (const Status status = check_arguments(scan, work_T_scan, out); status != Status::kOk)
     return status;
   const ArenaScope scope(scratch);
@@ -107,10 +108,12 @@ Status bucket(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratc
   if (scratch.failed()) return Status::kOutOfMemory;
   clear(out);
   const ScanToGrid to_grid(work_T_scan, out.grid);
-  count_cells(scan, to_grid, out.grid, buffers);
-  scatter(scan, to_grid, buffers);
-  write_medians(buffers, out);
-  return Status::kOk;
+  count_cells(scan, to_grid, out.grid, buffers, budget);
+  if (budget.was_over()) return Status::kStopped;
+  scatter(scan, to_grid, buffers, budget);
+  if (budget.was_over()) return Status::kStopped;
+  write_medians(buffers, out, budget);
+  return budget.was_over() ? Status::kStopped : Status::kOk;
 }
 
 }  // namespace flatpose::rectify

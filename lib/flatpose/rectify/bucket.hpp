@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/geometry/range_image.hpp"
@@ -27,6 +28,6 @@ namespace flatpose::rectify {
 /// Memory: bucket_required_bytes() of scratch, given back.  Fails: kInvalidArgument, kNotFinite,
 /// kTooLarge, kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant.
 [[nodiscard]] Status bucket(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratch,
-                            const HeightMap& out) noexcept;
+                            const HeightMap& out, const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::rectify

@@ -127,16 +127,16 @@ class Painter {
         kernels_(row_kernels(config.vector_path)),
         out_(out) {}
 
-  void run(const Scratches& scratches, Executor& executor) const noexcept {
+  [[nodiscard]] Status run(const Scratches& scratches, const Budget& budget) const noexcept {
     const Parts parts = choose_parts();
     Slots slots;
     auto body = [&](int part) {
       const int slot = slots.take();
       Scratch scratch = scratches[static_cast<std::size_t>(slot)];
-      paint(parts.window(out_.grid, part), scratch);
+      paint(parts.window(out_.grid, part), scratch, budget);
       slots.give_back(slot);
     };
-    for_each_chunk(executor, parts.bands.count(), body);
+    return for_each_chunk(budget, parts.bands.count(), body) ? Status::kOk : Status::kStopped;
   }
 
  private:
@@ -183,10 +183,14 @@ class Painter {
                  grid.y_of(window.row_begin), grid.y_of(window.row_end - 1));
   }
 
-  void paint(const CellWindow& window, Scratch& s) const noexcept {
-    clear(out_, window);
+  void paint(const CellWindow& window, Scratch& s, const Budget& budget) const noexcept {
+    for (int row = window.row_begin; row < window.row_end; row += kRowsPerLook) {
+      if (budget.is_over()) return;
+      clear(out_, {window.column_begin, window.column_end, row,
+                   std::min(row + kRowsPerLook, window.row_end)});
+    }
     int row_below = -1;
-    for (int strip = 0; strip < strip_count(); ++strip) {
+    for (int strip = 0; strip < strip_count() && !budget.is_over_at(strip); ++strip) {
       if (!reaches(strip, window)) continue;
       std::swap(s.above, s.below);
       if (row_below != strip) kernels_.transform_row(to_grid_, thin_, strip, s.above);
@@ -244,15 +248,14 @@ std::size_t paint_required_bytes(int scan_width_px) noexcept {
 }
 
 Status paint(const RangeImageView& scan, const Pose& work_T_scan, const PaintConfig& config,
-             Arena& scratch, const HeightMap& out, Executor& executor) noexcept {
+             Arena& scratch, const HeightMap& out, const Budget& budget) noexcept {
   if (const Status status = validate(config); status != Status::kOk) return status;
   if (const Status status = check_arguments(scan, work_T_scan, out); status != Status::kOk)
     return status;
   const ArenaScope scope(scratch);
   const Scratches scratches = take_scratches(scratch, thinned(scan, config.step_px).width_px);
   if (scratch.failed()) return Status::kOutOfMemory;
-  Painter(scan, work_T_scan, config, out).run(scratches, executor);
-  return Status::kOk;
+  return Painter(scan, work_T_scan, config, out).run(scratches, budget);
 }
 
 }  // namespace flatpose::rectify

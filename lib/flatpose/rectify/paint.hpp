@@ -20,7 +20,7 @@
 #include <cstddef>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
@@ -58,9 +58,9 @@ struct PaintConfig {
 /// to the cell's centre. Units/frames: heights are z of the work frame.  Cost: linear in pixels and
 /// cells painted. Memory: a few rows of scratch, given back.  Fails: kInvalidArgument, kNotFinite,
 /// kTooLarge, kShapeMismatch, kOutOfMemory; `out` is then as it was.  Thread: reentrant; parts of
-/// the map are shared out over `executor`.
+/// the map are shared out over `budget`.
 [[nodiscard]] Status paint(const RangeImageView& scan, const Pose& work_T_scan,
                            const PaintConfig& config, Arena& scratch, const HeightMap& out,
-                           Executor& executor = callers_thread) noexcept;
+                           const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::rectify

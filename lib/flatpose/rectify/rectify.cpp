@@ -23,10 +23,10 @@ std::size_t required_bytes(Method method, int scan_width_px, int scan_height_px,
 }
 
 Status rectify(const RangeImageView& scan, const Pose& work_T_scan, const RectifyConfig& config,
-               Arena& scratch, const HeightMap& out, Executor& executor) noexcept {
+               Arena& scratch, const HeightMap& out, const Budget& budget) noexcept {
   switch (config.method) {
-    case Method::kPaint: return paint(scan, work_T_scan, config.paint, scratch, out, executor);
-    case Method::kBucket: return bucket(scan, work_T_scan, scratch, out);
+    case Method::kPaint: return paint(scan, work_T_scan, config.paint, scratch, out, budget);
+    case Method::kBucket: return bucket(scan, work_T_scan, scratch, out, budget);
   }
   return Status::kInvalidArgument;
 }

@@ -31,6 +31,6 @@ struct RectifyConfig {
 /// Rectifies `scan` into `out` by the method of `config`: see paint() and bucket().
 [[nodiscard]] Status rectify(const RangeImageView& scan, const Pose& work_T_scan,
                              const RectifyConfig& config, Arena& scratch, const HeightMap& out,
-                             Executor& executor = callers_thread) noexcept;
+                             const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::rectify

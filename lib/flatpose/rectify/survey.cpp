@@ -201,13 +201,14 @@ class Surveyor {
     reach_.scan_height_px = scan.height_px;
   }
 
-  Extent run(Executor& executor) noexcept {
+  Result<Extent> run(const Budget& budget) noexcept {
     const RowChunks chunks(scan_.height_px, reach_.rows_per_group());
     std::array<Extent, kChunkCountMax> extents;
     auto body = [&](int chunk) {
-      extents[static_cast<std::size_t>(chunk)] = look(chunks.begin(chunk), chunks.end(chunk));
+      extents[static_cast<std::size_t>(chunk)] =
+          look(chunks.begin(chunk), chunks.end(chunk), budget);
     };
-    for_each_chunk(executor, chunks.count(), body);
+    if (!for_each_chunk(budget, chunks.count(), body)) return Status::kStopped;
     Extent extent;
     for (const Extent& part : extents) add(part, extent);
     reach_.rounding_mm = rounding_mm(extent, work_T_scan_);
@@ -215,12 +216,13 @@ class Surveyor {
   }
 
  private:
-  Extent look(int row_begin, int row_end) noexcept {
+  Extent look(int row_begin, int row_end, const Budget& budget) noexcept {
     Extent extent;
     const int group_rows = reach_.rows_per_group();
     for (int begin = row_begin; begin < row_end; begin += group_rows) {
       Extent group;
       for (int r = begin; r < std::min(begin + group_rows, row_end); ++r) {
+        if (budget.is_over_at(r)) return extent;
         kernels_.add_extent(scan_, r, affine_, group);
         // While it and its neighbours are at hand.
         if (r > row_begin) sample_row(scan_, work_T_scan_, r - 1, samples_);
@@ -253,7 +255,7 @@ std::size_t survey_required_bytes() noexcept {
 }
 
 Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena& scratch,
-                      VectorPath path, Executor& executor) noexcept {
+                      VectorPath path, const Budget& budget) noexcept {
   if (const Status status = check_scan(scan, work_T_scan); status != Status::kOk) return status;
   const ArenaScope scope(scratch);
   Samples samples(scratch);
@@ -261,9 +263,11 @@ Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan, Arena
   Survey result;
   result.point_count = static_cast<int>(scan.size());
   if (result.point_count == 0) return result;
-  const Extent extent = Surveyor(scan, work_T_scan, path, samples, result.reach).run(executor);
-  if (extent.has_wild) return Status::kNotFinite;
-  write_extent(extent, result);
+  const Result<Extent> extent =
+      Surveyor(scan, work_T_scan, path, samples, result.reach).run(budget);
+  if (!extent) return extent.status();
+  if (extent->has_wild) return Status::kNotFinite;
+  write_extent(*extent, result);
   samples.gather();
   result.pitch_along_row_mm = samples.along_row.median();
   result.pitch_along_column_mm = samples.along_column.median();

@@ -13,7 +13,7 @@
 #include <limits>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/geometry/pose.hpp"
@@ -43,10 +43,10 @@ struct Survey {
 /// Cost: one pass, and a bounded sample.  Memory: survey_required_bytes() of scratch, given back.
 /// Fails: kNotFinite (an infinite coordinate, or one beyond 1e6 mm; NaN is a missing point),
 /// kInvalidArgument, kTooLarge, kOutOfMemory.  Thread: reentrant; rows are shared out over
-/// `executor`.
+/// `budget`.
 [[nodiscard]] Result<Survey> survey(const RangeImageView& scan, const Pose& work_T_scan,
                                     Arena& scratch, VectorPath path = VectorPath::kPortable,
-                                    Executor& executor = callers_thread) noexcept;
+                                    const Budget& budget = callers_thread) noexcept;
 
 /// A box in x and y of the work frame; without bounds as it stands.
 struct Region {

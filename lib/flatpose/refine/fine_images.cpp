@@ -23,8 +23,10 @@ Status begin_fine_images(const scene::Scene& scene, FineImages& images) noexcept
                                  images.normal_y);
 }
 
-Status write_fine_distances(const scene::Scene& scene, FineImages& images) noexcept {
-  return image::edge_distances(scene.edges, {}, images.edge_distance_third_px, scene.vector_path);
+Status write_fine_distances(const scene::Scene& scene, FineImages& images,
+                            const Budget& budget) noexcept {
+  return image::edge_distances(scene.edges, {}, images.edge_distance_third_px, scene.vector_path,
+                               budget);
 }
 
 Status build_fine_images(const scene::Scene& scene, FineImages& images) noexcept {

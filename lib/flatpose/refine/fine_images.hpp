@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/image/octant_image.hpp"
@@ -48,6 +49,7 @@ struct BoundedDistance {
 /// build_fine_images() in parts: what is the scene's own; the distances; normals are those of
 /// image::write_normals().
 [[nodiscard]] Status begin_fine_images(const scene::Scene& scene, FineImages& images) noexcept;
-[[nodiscard]] Status write_fine_distances(const scene::Scene& scene, FineImages& images) noexcept;
+[[nodiscard]] Status write_fine_distances(const scene::Scene& scene, FineImages& images,
+                                          const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::refine

@@ -139,13 +139,13 @@ class Measurement {
               const PolishConfig& config, PolishScratch& scratch) noexcept
       : part_(part), raw_(raw), work_T_object_(work_T_object), config_(config), scratch_(scratch) {}
 
-  /// Returns how many crossings were found. `part_only`: of a first part of the contour, whose
-  /// points are in an order in which any first ones are spread well, and of a quarter of the
-  /// points.
-  int measure(bool part_only, Executor& executor) noexcept {
+  /// Returns how many crossings were found; none of them means anything when the budget is over.
+  /// `part_only`: of a first part of the contour, whose points are in an order in which any first
+  /// ones are spread well, and of a quarter of the points.
+  int measure(bool part_only, const Budget& budget) noexcept {
     part_only_ = part_only;
     count_ = part_only ? std::min(part_.contour_count, kContourToComeHome) : part_.contour_count;
-    for_each_chunk(executor, 1 + kContourChunkCount, *this);
+    if (!for_each_chunk(budget, 1 + kContourChunkCount, *this)) return 0;
     std::fill(scratch_.crossings.begin() + count_, scratch_.crossings.begin() + part_.contour_count,
               Crossing{});
     return static_cast<int>(std::count_if(scratch_.crossings.begin(),
@@ -224,17 +224,18 @@ PolishScratch take_polish_scratch(Arena& arena) noexcept {
 
 Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                             const Pose& work_T_object, const PolishConfig& config,
-                            PolishScratch& scratch, Executor& executor) noexcept {
+                            PolishScratch& scratch, const Budget& budget) noexcept {
   PolishResult out;
   out.work_T_object = work_T_object;
   Sigmas sigmas{part.noise_mm, 0.5 * part.pitch_mm};
   for (int round = 0; round < config.round_count; ++round) {
     const bool is_last = round + 1 == config.round_count;
     Measurement measurement(part, raw, out.work_T_object, config, scratch);
-    out.crossing_count = measurement.measure(!is_last, executor);
+    out.crossing_count = measurement.measure(!is_last, budget);
     const bool is_enough =
         out.crossing_count >= kCrossingsToComeHome && scratch.footprint.count >= kPointsToComeHome;
-    if (!is_last && !is_enough) out.crossing_count = measurement.measure(false, executor);
+    if (!is_last && !is_enough) out.crossing_count = measurement.measure(false, budget);
+    if (budget.was_over()) return Status::kStopped;
     // The reach shrinks with the rounds: wide to come home, narrow to shut out what is not ours.
     const double reach_mm = std::max(config.search_mm / (round + 1), 1.5 * part.pitch_mm);
     const PolishProblem problem(part, config, reach_mm, sigmas, scratch);

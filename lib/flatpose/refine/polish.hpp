@@ -8,7 +8,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
 #include "flatpose/refine/footprint.hpp"
@@ -53,6 +53,6 @@ struct PolishScratch {
 /// scratch of its own.
 [[nodiscard]] Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
                                           const Pose& work_T_object, const PolishConfig& config,
-                                          PolishScratch& scratch, Executor& executor) noexcept;
+                                          PolishScratch& scratch, const Budget& budget) noexcept;
 
 }  // namespace flatpose::refine

@@ -69,30 +69,29 @@ Scene take_scene(Arena& arena, const rectify::Grid& grid,
 
 Status build_scene(const RangeImageView& scan, const Frames& frames, const rectify::Grid& grid,
                    const SceneConfig& config, Arena& arena, Scene& scene,
-                   Executor& executor) noexcept {
+                   const Budget& budget) noexcept {
   std::span<image::EdgePoint> edge_memory;
   scene = take_scene(arena, grid, edge_memory);
   if (arena.failed()) return Status::kOutOfMemory;
   scene.noise_mm = config.noise_mm;
   scene.pitch_mm = config.pitch_mm;
   scene.vector_path = config.vector_path;
-  if (const Status s =
-          rectify::rectify(scan, frames.work_T_scan, rectify_config(config, grid.cell_mm), arena,
-                           scene.map, executor);
+  if (const Status s = rectify::rectify(
+          scan, frames.work_T_scan, rectify_config(config, grid.cell_mm), arena, scene.map, budget);
       s != Status::kOk) {
     return s;
   }
   const Status filled = image::fill_missing(scene.map.height_mm, scene.filled_mm, scene.missing,
-                                            arena, config.vector_path, executor);
+                                            arena, config.vector_path, budget);
   if (filled != Status::kOk) return filled;
   if (const Status s = image::lower_dark_pits(pit_config(config), arena, scene.missing,
-                                              scene.filled_mm, config.vector_path);
+                                              scene.filled_mm, config.vector_path, budget);
       s != Status::kOk) {
     return s;
   }
   const Result<int> edge_count =
       image::detect_edges(scene.filled_mm, scene.missing, grid.cell_mm, edge_config(config), arena,
-                          scene.edge_kind, edge_memory, config.vector_path, executor);
+                          scene.edge_kind, edge_memory, config.vector_path, budget);
   if (!edge_count) return edge_count.status();
   scene.edges = edge_memory.first(static_cast<std::size_t>(*edge_count));
   return Status::kOk;

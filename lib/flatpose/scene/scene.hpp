@@ -48,9 +48,9 @@ struct Scene {
 /// Rectifies, fills and finds the edges.
 /// Memory: `arena` keeps what take_scene takes; scratch on top of it is given back.
 /// Fails: as rectify and detect_edges; kTooLarge when the scan has more edge cells than a quarter
-/// of its cells.  Thread: reentrant; shared out over `executor`.
+/// of its cells.  Thread: reentrant; shared out over `budget`.
 [[nodiscard]] Status build_scene(const RangeImageView& scan, const Frames& frames,
                                  const rectify::Grid& grid, const SceneConfig& config, Arena& arena,
-                                 Scene& scene, Executor& executor = callers_thread) noexcept;
+                                 Scene& scene, const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::scene

@@ -51,8 +51,8 @@ class Search {
  public:
   Search(const SearchImages& images, const TiltField& field, const Places& places,
          const model::Template& part, int anchor_index, const GridSearchConfig& config,
-         Executor& executor) noexcept
-      : executor_(executor),
+         const Budget& budget) noexcept
+      : budget_(budget),
         images_(images),
         field_(field),
         places_(places),
@@ -77,11 +77,12 @@ class Search {
   /// Local minima among neighbours in place and angle, best first, at most as many as `candidates`
   /// holds. A threshold takes none away that costs no more, nor makes one: it is rivals that cost
   /// no more which decide whether a place is a minimum. So a full list is the list.
-  int run(std::span<Candidate> candidates) noexcept {
+  Result<int> run(std::span<Candidate> candidates) noexcept {
     const auto first = static_cast<std::int32_t>(config_.first_share * kCostMax);
     int count = 0;
     for (const std::int32_t threshold : {std::min(first, kCostMax), kCostMax}) {
       evaluate_all(threshold);
+      if (budget_.is_over()) return Status::kStopped;
       count = list_minima(places_, memory_.bests, angle_count_, memory_.block_lows, candidates);
       if (!is_limited_ || count == static_cast<int>(candidates.size())) break;
     }
@@ -105,7 +106,7 @@ class Search {
     share_out_rows();
     is_limited_ = false;
     evaluated_counts_.fill(0);
-    for (int bin = 0; bin < kBinCount;) {
+    for (int bin = 0; bin < kBinCount && !budget_.was_over();) {
       bin = gather_bins(bin);
       turn_bins(threshold);
       search_bins();
@@ -147,7 +148,7 @@ class Search {
     const auto each = static_cast<std::size_t>(angle_count_);
     const int chunk_count = std::min(kBandCount, bins_at_hand_);
     auto turn_some = [&](int chunk) {
-      for (int i = chunk; i < bins_at_hand_; i += chunk_count) {
+      for (int i = chunk; i < bins_at_hand_ && !budget_.is_over(); i += chunk_count) {
         const std::size_t first = static_cast<std::size_t>(i) * each;
         TurnedTemplate& turned = memory_.turned[i];
         turned = TurnedTemplate{};
@@ -156,12 +157,13 @@ class Search {
         turner.turn(bins_[i], turned);
       }
     };
-    for_each_chunk(executor_, chunk_count, turn_some);
+    if (!for_each_chunk(budget_, chunk_count, turn_some)) return;
     for (int i = 0; i < bins_at_hand_; ++i) is_limited_ |= memory_.turned[i].is_limited;
   }
 
   void search_bins() noexcept {
     auto search_band = [&](int band) {
+      int until_look = kBlocksPerLook;
       const int row_begin = band > 0 ? row_end_[band - 1] : 0;
       for (int i = 0; i < bins_at_hand_; ++i) {
         const BinJob job{images_,
@@ -172,10 +174,27 @@ class Search {
                          bound_nodes_for(config_.vector_path)};
         const int begin = first_block(bins_[i], row_begin);
         const int end = first_block(bins_[i], row_end_[band]);
-        if (begin < end) evaluated_counts_[band] += search_bin(job, begin, end);
+        evaluated_counts_[band] += search_in_pieces(job, begin, end, until_look);
       }
     };
-    for_each_chunk(executor_, kBandCount, search_band);
+    (void)for_each_chunk(budget_, kBandCount, search_band);
+  }
+
+  // Blocks of one bin, with a look at the budget whenever `until_look` of them are done; nodes go
+  // by whole rows.
+  [[nodiscard]] std::int64_t search_in_pieces(const BinJob& job, int begin, int end,
+                                              int& until_look) const noexcept {
+    std::int64_t evaluated_count = 0;
+    while (begin < end && !budget_.was_over()) {
+      const int next = images_.nodes.side > 0 ? end : std::min(end, begin + until_look);
+      evaluated_count += search_bin(job, begin, next);
+      until_look -= next - begin;
+      begin = next;
+      if (until_look > 0) continue;
+      (void)budget_.is_over();
+      until_look = kBlocksPerLook;
+    }
+    return evaluated_count;
   }
 
   // The first of the bin's blocks that is not above `row`.
@@ -212,7 +231,7 @@ class Search {
     c.cost_q10 = c.cost_q10 * 1024 / std::max(1, cost_max(images_, projected));
   }
 
-  Executor& executor_;
+  const Budget& budget_;
   const SearchImages& images_;
   const TiltField& field_;
   const Places& places_;
@@ -271,7 +290,7 @@ Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField
                                      const Places& places, const model::Template& part,
                                      int anchor_index, const GridSearchConfig& config,
                                      Arena& scratch, std::span<Candidate> candidates,
-                                     Executor& executor) noexcept {
+                                     const Budget& budget) noexcept {
   if (anchor_index < 0 || anchor_index >= part.anchor_count || !is_valid(config)) {
     return Status::kInvalidArgument;
   }
@@ -281,10 +300,12 @@ Result<GridSearchResult> grid_search(const SearchImages& images, const TiltField
     return Status::kShapeMismatch;
   }
   const ArenaScope scope(scratch);
-  Search search(images, field, places, part, anchor_index, config, executor);
+  Search search(images, field, places, part, anchor_index, config, budget);
   if (!search.take_memory(scratch)) return Status::kOutOfMemory;
   GridSearchResult result;
-  result.candidate_count = search.run(candidates);
+  const Result<int> count = search.run(candidates);
+  if (!count) return count.status();
+  result.candidate_count = *count;
   result.hypothesis_count = search.hypothesis_count();
   result.evaluated_count = search.evaluated_count();
   return result;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
-#include "flatpose/core/executor.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/result.hpp"
 #include "flatpose/core/vector_path.hpp"
 #include "flatpose/model/template.hpp"
@@ -48,14 +48,14 @@ void reserve_search_scratch(Arena& arena, const rectify::Grid& fine,
 /// Cost: places x angles x points, ended early against the best so far.  Memory: `scratch` takes up
 /// to 8 bytes a place and some for templates.  Fails: kOutOfMemory, kShapeMismatch (places of
 /// another lattice), kInvalidArgument (anchor_index; a config field out of its range). Ties: by
-/// row, column, angle.  Thread: reentrant; `executor` runs bands of rows side by side, and the
+/// row, column, angle.  Thread: reentrant; `budget` runs bands of rows side by side, and the
 /// result is the same whoever does.
 [[nodiscard]] Result<GridSearchResult> grid_search(const SearchImages& images,
                                                    const TiltField& field, const Places& places,
                                                    const model::Template& part, int anchor_index,
                                                    const GridSearchConfig& config, Arena& scratch,
                                                    std::span<Candidate> candidates,
-                                                   Executor& executor = callers_thread) noexcept;
+                                                   const Budget& budget = callers_thread) noexcept;
 
 /// The size of the sector of angles that the part's symmetry leaves to search. A part of full
 /// symmetry has one angle, as long as the anchor is its centre.

@@ -218,7 +218,7 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
 }
 
 Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
-                     SearchImages& images) noexcept {
+                     SearchImages& images, const Budget& budget) noexcept {
   const ArenaScope scope(scratch);
   const auto missing =
       scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
@@ -226,7 +226,7 @@ Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
   const Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm,
                                 scene.vector_path);
   return s == Status::kOk ? image::fill_missing(images.filled_mm, images.filled_mm, missing,
-                                                scratch, scene.vector_path)
+                                                scratch, scene.vector_path, budget)
                           : s;
 }
 
@@ -247,8 +247,8 @@ Status write_surface(const HeightRange& range, Arena& scratch, SearchImages& ima
 
 // The scene's edges at the coarse level: found where they are sharpest, drawn where they are
 // needed.
-Status write_edge_costs(const scene::Scene& scene, Arena& scratch,
-                        const SearchImages& images) noexcept {
+Status write_edge_costs(const scene::Scene& scene, Arena& scratch, const SearchImages& images,
+                        const Budget& budget) noexcept {
   const ArenaScope scope(scratch);
   const image::OctantImage costs{
       scratch.take_image<image::OctantCell>(images.grid.width_px, images.grid.height_px)};
@@ -256,7 +256,7 @@ Status write_edge_costs(const scene::Scene& scene, Arena& scratch,
   image::ChannelConfig config;
   config.edge_cells = 2;
   config.distance_max_third_px = kEdgeCostMax;
-  if (const Status s = image::edge_distances(scene.edges, config, costs, scene.vector_path);
+  if (const Status s = image::edge_distances(scene.edges, config, costs, scene.vector_path, budget);
       s != Status::kOk)
     return s;
   if (!images.config.use_directions) forget_directions(costs);

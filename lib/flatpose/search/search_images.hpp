@@ -6,6 +6,7 @@
 #include <span>
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/image/edge.hpp"
@@ -96,7 +97,8 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 /// Halves the scene's heights; heights more than `jump_mm` apart are not averaged.
 /// Fails: kOutOfMemory (scratch), kTooFewPoints (nothing valid).
 [[nodiscard]] Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
-                                   SearchImages& images) noexcept;
+                                   SearchImages& images,
+                                   const Budget& budget = callers_thread) noexcept;
 
 /// Fills the bytes. `range` is where places lie: heights beyond it by more than the tolerance are
 /// told apart no further.
@@ -113,6 +115,7 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 [[nodiscard]] Status write_surface(const HeightRange& range, Arena& scratch,
                                    SearchImages& images) noexcept;
 [[nodiscard]] Status write_edge_costs(const scene::Scene& scene, Arena& scratch,
-                                      const SearchImages& images) noexcept;
+                                      const SearchImages& images,
+                                      const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::search

@@ -28,11 +28,12 @@ class Fitter {
     std::fill(heights_.begin(), heights_.end(), 0.0);
   }
 
-  void run(ImageView<const float> filled_mm, double cell_mm, const TiltField& field) noexcept {
+  void run(ImageView<const float> filled_mm, double cell_mm, const TiltField& field,
+           const Budget& budget) noexcept {
     base_mm_ = filled_mm(0, 0);
     const int r = window_.radius_px;
     const int height_px = filled_mm.height_px;
-    for (int y = 0; y < height_px; ++y) {
+    for (int y = 0; y < height_px && !budget.is_over_at(y); ++y) {
       if (y % window_.stride_px == 0 && (y < r || y >= height_px - r)) write_none(y, field);
       spread_heights(filled_mm.row(y));
       kernels_.sum_row(window_, heights_.data() + kTiltWindowRadiusMax_px, sums(y));
@@ -114,7 +115,8 @@ void reserve_tilt_scratch(Arena& arena, int width_px) noexcept {
 }
 
 Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
-                      Arena& scratch, TiltField& field, int stride_px, VectorPath path) noexcept {
+                      Arena& scratch, TiltField& field, int stride_px, VectorPath path,
+                      const Budget& budget) noexcept {
   if (radius_px < 1 || radius_px > kTiltWindowRadiusMax_px || stride_px < 1 || !(cell_mm > 0.0))
     return Status::kInvalidArgument;
   for (const auto& image : {field.slope_x, field.slope_y, field.plane_mm, field.rms_mm}) {
@@ -125,8 +127,8 @@ Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radi
   Fitter fitter(scratch, filled_mm.width_px, radius_px, std::min(stride_px, filled_mm.width_px),
                 tilt_kernels(path));
   if (scratch.failed()) return Status::kOutOfMemory;
-  fitter.run(filled_mm, cell_mm, field);
-  return Status::kOk;
+  fitter.run(filled_mm, cell_mm, field, budget);
+  return budget.was_over() ? Status::kStopped : Status::kOk;
 }
 
 }  // namespace flatpose::search

@@ -9,6 +9,7 @@
 //   (2)  residual^2 = sum(z^2) - n c^2 - S (a^2 + b^2)
 
 #include "flatpose/core/arena.hpp"
+#include "flatpose/core/budget.hpp"
 #include "flatpose/core/image_view.hpp"
 #include "flatpose/core/status.hpp"
 #include "flatpose/core/vector_path.hpp"
@@ -37,6 +38,7 @@ void reserve_tilt_scratch(Arena& arena, int width_px) noexcept;
 /// 1..kTiltWindowRadiusMax_px, stride below 1), kOutOfMemory.  Thread: reentrant.
 [[nodiscard]] Status fit_tilt_field(ImageView<const float> filled_mm, double cell_mm, int radius_px,
                                     Arena& scratch, TiltField& field, int stride_px = 1,
-                                    VectorPath path = VectorPath::kPortable) noexcept;
+                                    VectorPath path = VectorPath::kPortable,
+                                    const Budget& budget = callers_thread) noexcept;
 
 }  // namespace flatpose::search
