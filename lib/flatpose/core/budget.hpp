@@ -35,7 +35,7 @@ class Budget {
   /// Cost: a reading of the clock.  Thread: any.
   [[nodiscard]] bool is_over() const noexcept {
     if (was_over()) return true;
-    if (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) {
+    if (cancel_ != nullptr && cancel_->is_asked_for()) {
       end_.store(End::kCancelled, std::memory_order_relaxed);
     } else if (clock_ != nullptr && clock_->now_us() >= end_us_) {
       end_.store(End::kDeadline, std::memory_order_relaxed);
@@ -56,11 +56,11 @@ class Budget {
 
  private:
   enum class End : int { kNone, kDeadline, kCancelled };
-  static_assert(std::atomic<End>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+  static_assert(std::atomic<End>::is_always_lock_free);
 
   Executor& executor_;
   const Clock* clock_ = nullptr;
-  const std::atomic<bool>* cancel_ = nullptr;
+  const Cancel* cancel_ = nullptr;
   std::int64_t end_us_ = kNoEnd;
   mutable std::atomic<End> end_{End::kNone};
 };
