@@ -11,17 +11,21 @@
 namespace flatpose::bench {
 namespace {
 
-/// The last chunk first.
+/// The last chunk first; none may share out work in its turn.
 class Backwards final : public Executor {
  public:
   void parallel_for(int chunk_count, Task task, void* context) noexcept override {
+    EXPECT_FALSE(is_at_work_);
+    is_at_work_ = true;
     for (int i = chunk_count; i-- > 0;) task(context, i);
+    is_at_work_ = false;
     most_chunks_ = std::max(most_chunks_, chunk_count);
   }
   [[nodiscard]] int most_chunks() const noexcept { return most_chunks_; }
 
  private:
   int most_chunks_ = 0;
+  bool is_at_work_ = false;
 };
 
 struct ThreadsCase {

@@ -95,9 +95,9 @@ class Features {
   [[nodiscard]] Status build_surface() noexcept {
     search::SearchImages& coarse = work_.coarse;
     Arena& scratch = scratches_.surface;
-    Status s = search::halve_heights(scene_, settings_.verify.height_tolerance_mm, scratch, coarse,
-                                     budget_);
+    Status s = search::halve_heights(scene_, settings_.verify.height_tolerance_mm, scratch, coarse);
     if (s != Status::kOk) return s;
+    if (budget_.is_over()) return Status::kStopped;
     s = search::fit_tilt_field(coarse.filled_mm, coarse.grid.cell_mm, settings_.tilt_radius_px,
                                scratch, work_.tilt, settings_.places.stride_px, scene_.vector_path,
                                budget_);

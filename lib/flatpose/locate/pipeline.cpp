@@ -94,10 +94,10 @@ class Pipeline {
       const Box box = bounding_box(config_.region);
       const Vec3 a = frames_.work_T_face() * Vec3{box.x0_mm, box.y0_mm, 0.0};
       const Vec3 b = frames_.work_T_face() * Vec3{box.x1_mm, box.y1_mm, 0.0};
-      grid_config.region = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x),
-                            std::max(a.y, b.y)};
-      // The region bounds the origin; the part may reach beyond it.
-      grid_config.margin_mm = 2.0 * part_.radius_mm;
+      // The region bounds the origin; the part may reach beyond it, but not beyond the scan.
+      const double margin_mm = 2.0 * part_.radius_mm;
+      grid_config.region = {std::min(a.x, b.x) - margin_mm, std::min(a.y, b.y) - margin_mm,
+                            std::max(a.x, b.x) + margin_mm, std::max(a.y, b.y) + margin_mm};
     }
     const Result<rectify::Grid> grid = rectify::choose_grid(survey, grid_config);
     if (grid && (grid->width_px > kMapSideMax_px || grid->height_px > kMapSideMax_px))

@@ -218,7 +218,7 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept {
 }
 
 Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
-                     SearchImages& images, const Budget& budget) noexcept {
+                     SearchImages& images) noexcept {
   const ArenaScope scope(scratch);
   const auto missing =
       scratch.take_image<std::uint8_t>(images.grid.width_px, images.grid.height_px);
@@ -226,7 +226,7 @@ Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
   const Status s = image::halve(scene.map.height_mm, static_cast<float>(jump_mm), images.filled_mm,
                                 scene.vector_path);
   return s == Status::kOk ? image::fill_missing(images.filled_mm, images.filled_mm, missing,
-                                                scratch, scene.vector_path, budget)
+                                                scratch, scene.vector_path)
                           : s;
 }
 

@@ -97,8 +97,7 @@ void reserve_image_scratch(Arena& arena, const rectify::Grid& coarse) noexcept;
 /// Halves the scene's heights; heights more than `jump_mm` apart are not averaged.
 /// Fails: kOutOfMemory (scratch), kTooFewPoints (nothing valid).
 [[nodiscard]] Status halve_heights(const scene::Scene& scene, double jump_mm, Arena& scratch,
-                                   SearchImages& images,
-                                   const Budget& budget = callers_thread) noexcept;
+                                   SearchImages& images) noexcept;
 
 /// Fills the bytes. `range` is where places lie: heights beyond it by more than the tolerance are
 /// told apart no further.
