@@ -28,7 +28,7 @@ def read_graph(objects, rules):
     for line in Path(objects).read_text().splitlines():
         graph.read(Path(line).with_suffix(".ci").read_text())
     graph.resolve([Rule(**rule) for rule in rules["indirect"]], rules["external"],
-                  [(rule["function"], rule["calls_max"]) for rule in rules["recursion"]])
+                  [(rule["function"], rule["calls_max"]) for rule in rules.get("recursion", [])])
     return graph
 
 

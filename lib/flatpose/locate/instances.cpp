@@ -1,18 +1,18 @@
 #include "flatpose/locate/instances.hpp"
 
-#include <algorithm>
+#include "flatpose/core/sort.hpp"
 
 namespace flatpose::locate {
 namespace {
 
-bool precedes(const Instance& a, const Instance& b) noexcept {
+constexpr auto precedes = [](const Instance& a, const Instance& b) noexcept {
   if (a.rank() != b.rank()) return a.rank() > b.rank();
   const Vec3& p = a.work_T_object.position_mm;
   const Vec3& q = b.work_T_object.position_mm;
   if (p.x != q.x) return p.x < q.x;
   if (p.y != q.y) return p.y < q.y;
   return a.work_T_object.rotation.m < b.work_T_object.rotation.m;
-}
+};
 
 }  // namespace
 
@@ -33,6 +33,8 @@ bool Instances::contains(const Pose& pose, double near_mm, double radius_mm) con
   return false;
 }
 
-void Instances::sort() noexcept { std::sort(memory_.begin(), memory_.begin() + count_, precedes); }
+void Instances::sort() noexcept {
+  sort_in_place(memory_.first(static_cast<std::size_t>(count_)), precedes);
+}
 
 }  // namespace flatpose::locate
