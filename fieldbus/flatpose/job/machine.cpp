@@ -67,8 +67,8 @@ Outputs Machine::process(std::int64_t now_us, const Inputs& inputs) noexcept {
   if (inputs.jobs != nullptr) jobs_ = *inputs.jobs;
   if (inputs.event != nullptr) take_event(*inputs.event);
   if (inputs.request != nullptr) {
-    ownership_.hear(inputs.request->master, now_us_);
     if (inputs.request->is_write) out.verdict = take_write(*inputs.request);
+    ownership_.hear(inputs.request->master, now_us_);
   }
   out.order = order_;
   out.next_us = next_us();

@@ -42,7 +42,8 @@ struct Request {
 
 enum class Verdict : std::uint8_t {
   kGranted,
-  kNotOwner,  ///< Nothing was applied: another master holds the lease, or the connection is old.
+  kNotOwner,  ///< Nothing was applied: another master holds the lease, or this is what an old
+              ///< connection held.
   kBadValue,  ///< Nothing was applied: this trigger is not the configured one.
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 // Who speaks: a master is an address, not a socket. What must outlive its connections is written
-// down here: the last number seen, so that none is executed twice, and the newest connection that
-// wrote, so that what still lies in an older one's buffer cannot come after.
+// down here: the last number seen, so that none is executed twice, and the connection that wrote
+// last, so that what still lies in an older one's buffer cannot come after.
 
 #include <array>
 #include <cstdint>
@@ -18,10 +18,13 @@ struct Master {
   std::uint64_t connection = 0;  ///< Counts up with each connection that is accepted.
 };
 
+inline constexpr std::uint64_t kNoConnection = ~std::uint64_t{0};
+
 struct MasterRecord {
   Address address = kNobody;
   std::uint16_t last_number = 0;
-  std::uint64_t newest_connection = 0;
+  std::uint64_t newest_connection = 0;               ///< The one that wrote last.
+  std::uint64_t revived_connection = kNoConnection;  ///< An older one, heard since: it lives.
   std::int64_t wrote_us = 0;
 };
 
@@ -37,6 +40,10 @@ class MasterBook {
     return nullptr;
   }
 
+  [[nodiscard]] MasterRecord* find(Address address) noexcept {
+    return const_cast<MasterRecord*>(static_cast<const MasterBook&>(*this).find(address));
+  }
+
   /// The master's record, made if there is none.
   MasterRecord& open(Address address, std::int64_t now_us) noexcept {
     MasterRecord* chosen = &records_[0];
@@ -50,7 +57,7 @@ class MasterBook {
                                  : chosen->address != kNobody && record.wrote_us < chosen->wrote_us;
       if (is_better) chosen = &record;
     }
-    *chosen = {address, 0, 0, now_us};
+    *chosen = {address, 0, 0, kNoConnection, now_us};
     return *chosen;
   }
 

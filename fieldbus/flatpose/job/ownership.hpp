@@ -12,17 +12,23 @@ class Ownership {
  public:
   explicit Ownership(std::int64_t lease_us = 0) noexcept : lease_us_(lease_us) {}
 
-  /// Any sound request of a master: renews the owner's lease.
+  /// Any sound request of a master, after it was judged: renews the owner's lease, and shows that
+  /// its connection lives.
   void hear(const Master& master, std::int64_t now_us) noexcept {
     if (is_held(now_us) && owner_ == master.address) held_until_us_ = now_us + lease_us_;
+    MasterRecord* record = book_.find(master.address);
+    if (record != nullptr && master.connection < record->newest_connection)
+      record->revived_connection = master.connection;
   }
 
-  /// Nobody else holds the lease, and the connection is not older than the newest that wrote.
+  /// Nobody else holds the lease; and a connection older than the one that wrote last was heard
+  /// since: what a master left behind in an abandoned one is a single request.
   [[nodiscard]] bool may_write(const Master& master, std::int64_t now_us) const noexcept {
     if (master.address == kNobody) return false;
     if (is_held(now_us) && owner_ != master.address) return false;
     const MasterRecord* record = book_.find(master.address);
-    return record == nullptr || master.connection >= record->newest_connection;
+    return record == nullptr || master.connection >= record->newest_connection ||
+           master.connection == record->revived_connection;
   }
 
   /// Whether a write by this master would be the first after another's.
@@ -36,6 +42,7 @@ class Ownership {
     held_until_us_ = now_us + lease_us_;
     MasterRecord& record = book_.open(master.address, now_us);
     record.newest_connection = master.connection;
+    record.revived_connection = kNoConnection;
     return record;
   }
 

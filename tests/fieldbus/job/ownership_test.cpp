@@ -29,7 +29,7 @@ TEST(Ownership, OthersWriteOnlyWhenTheLeaseIsOut) {
   EXPECT_FALSE(ownership.may_write({kNobody, 1}, kLease_us));
 }
 
-TEST(Ownership, ANewConnectionOfTheSameAddressTakesOverAndTheOldOneIsDone) {
+TEST(Ownership, ANewConnectionOfTheSameAddressTakesOverAndTheOldOnesRestIsRefused) {
   Ownership ownership(kLease_us);
   ownership.take({1, 10}, 0);
   EXPECT_TRUE(ownership.may_write({1, 11}, 1));
@@ -37,6 +37,22 @@ TEST(Ownership, ANewConnectionOfTheSameAddressTakesOverAndTheOldOneIsDone) {
   EXPECT_FALSE(ownership.may_write({1, 10}, 2));
   EXPECT_TRUE(ownership.may_write({1, 11}, 2));
   EXPECT_FALSE(ownership.may_write({1, 10}, 100 * kLease_us));  // lease or not
+  EXPECT_FALSE(ownership.may_write({1, 9}, 2));
+}
+
+// Two programs behind one address may both write, if they show that they live.
+TEST(Ownership, AnOldConnectionThatIsHeardAgainMayWrite) {
+  Ownership ownership(kLease_us);
+  ownership.take({1, 10}, 0);
+  ownership.take({1, 11}, 1);
+  ownership.hear({1, 10}, 2);
+  EXPECT_TRUE(ownership.may_write({1, 10}, 3));
+  ownership.take({1, 10}, 3);
+  EXPECT_TRUE(ownership.may_write({1, 11}, 4));
+  ownership.take({1, 11}, 4);
+  EXPECT_FALSE(ownership.may_write({1, 10}, 5));  // heard before, not since
+  ownership.hear({1, 11}, 6);                     // nor does the other's voice count
+  EXPECT_FALSE(ownership.may_write({1, 10}, 7));
 }
 
 TEST(MasterBook, RemembersEachMastersNumberWhoeverWroteBetween) {

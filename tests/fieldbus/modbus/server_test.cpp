@@ -149,6 +149,20 @@ TEST(ModbusServer, ReadsRenewTheLease) {
   EXPECT_EQ(line.write_number(9, job::kBob), (Bytes{0x86, 6}));
 }
 
+TEST(ModbusServer, TwoProgramsBehindOneAddressBothWriteWhenTheyPoll) {
+  Line line;
+  for (std::uint8_t number = 1; number < 20; ++number) {
+    line.connection = 1 + number % 2;
+    line.read_register(kDoneAt);
+    EXPECT_EQ(line.write_number(number), (Bytes{6, 0, 0, 0, number}));
+    line.finish(line.found());
+  }
+  // One that does not is told once; the second was the last that wrote.
+  line.connection = 1;
+  EXPECT_EQ(line.write_number(52), (Bytes{0x86, 6}));
+  EXPECT_EQ(line.write_number(52), (Bytes{6, 0, 0, 0, 52}));
+}
+
 TEST(ModbusServer, WordOrderIsAsSet) {
   Line line;
   line.settings.format.order = result_map::WordOrder::kCdab;
