@@ -29,8 +29,9 @@ constexpr const char* kSteps =
 4. `status` >= 0 and the bit `valid`: there is a pose. Anything else: there is none, and its registers say so.
 
 A number is executed once, however often it is written: write it again when you cannot know whether it arrived. A refused
-number is used up. A write answered by exception 6 was not applied at all: another master holds the lease. The lease ends
-5 s after the owner's last request, of any kind; a command that runs then ends as `cancelled`.
+number is used up. A write answered by exception 6 was not applied at all: another master holds the lease, or a newer
+connection of yours has written since this one was last heard (send it again). The lease ends 5 s after the owner's last
+request, of any kind, on whatever connection; a command that runs then ends as `cancelled`.
 
 ## How numbers are written
 Value = raw x scale. 32-bit values take two registers; by default the order of bytes is ABCD (high word first), and
