@@ -21,6 +21,8 @@ install(EXPORT flatposeTargets NAMESPACE flatpose:: DESTINATION ${package_dir})
 install(CODE "set(source_dir \"${PROJECT_SOURCE_DIR}\")\nset(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_headers.cmake)
 
+install(FILES ${PROJECT_SOURCE_DIR}/examples/find_plate.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+
 foreach(program flatpose_tool flatposed)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
