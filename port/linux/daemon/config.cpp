@@ -9,6 +9,10 @@ Config read_config(Section file) {
   Config config;
   read_search(file.section("search"), config);
   read_realtime(file.section("realtime"), config);
+  read_modbus(file.section("modbus"), config);
+  read_source(file.section("source"), config);
+  for (const Section& part : file.sections("part")) read_part(part, config);
+  for (const Section& job : file.sections("job")) read_job(job, config);
   file.finish();
   return config;
 }

@@ -3,10 +3,15 @@
 // a line in load_config().
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "flatpose/job/rules.hpp"
 #include "flatpose/locate/locator.hpp"
+#include "flatpose/result_map/registers.hpp"
+#include "port/linux/files/scan.hpp"
 #include "port/linux/realtime/config.hpp"
 
 namespace flatpose::daemon {
@@ -23,9 +28,55 @@ struct SearchConfig {
   std::int64_t max_scan_bytes = 256 << 20;
 };
 
+/// [modbus]; without the section there is no server.
+struct ModbusConfig {
+  bool is_on = false;
+  std::string place;  ///< "FILE:LINE" of the port, for messages.
+  std::string bind = "0.0.0.0";
+  int port = 502;  ///< 0: any that is free.
+  std::uint8_t unit = 1;
+  result_map::WireFormat format;
+  job::Handshake handshake = job::Handshake::kNumber;
+  std::int64_t lease_us = 5'000'000;
+};
+
+/// [source]: where scans come from.
+struct SourceConfig {
+  std::string replay;  ///< A file, or a folder of them; empty: there is no source.
+  std::string place;
+  std::optional<port::Up> up;
+  bool allow_simulated = false;
+};
+
+/// [[part]]
+struct PartConfig {
+  std::string name;
+  std::string file;
+};
+
+/// What withholds a pose that was found, in the job's frame.
+struct PoseLimits {
+  Vec3 least_mm{-1e9, -1e9, -1e9};
+  Vec3 greatest_mm{1e9, 1e9, 1e9};
+  double tilt_rad = 10.0;  ///< Of the part against the plane.
+};
+
+/// [[job]]
+struct JobConfig {
+  job::JobRule rule;
+  std::vector<int> parts;       ///< Indices into Config::parts, searched in the same scan.
+  locate::LocateConfig locate;  ///< Its deadline is the job's.
+  std::string work_file;        ///< Of frame "work".
+  PoseLimits limits;
+};
+
 struct Config {
   SearchConfig search;
   port::RealtimeConfig realtime;
+  ModbusConfig modbus;
+  SourceConfig source;
+  std::vector<PartConfig> parts;
+  std::vector<JobConfig> jobs;
 };
 
 /// Fails: port::InputError, `FILE:LINE: WHAT; REMEDY`.
@@ -35,6 +86,12 @@ struct Config {
 void read_search(Section section, Config& config);
 /// After read_search(): there is a processor for each thread or none is given.
 void read_realtime(Section section, Config& config);
+
+void read_modbus(Section section, Config& config);
+void read_source(Section section, Config& config);
+void read_part(Section section, Config& config);
+/// After all parts.
+void read_job(Section section, Config& config);
 
 /// What the daemon holds in memory while it runs, stacks and loading apart.
 [[nodiscard]] std::int64_t held_bytes(const SearchConfig& search);

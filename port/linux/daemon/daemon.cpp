@@ -2,12 +2,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <new>
+#include <optional>
 #include <ostream>
 #include <sstream>
+#include <utility>
 
+#include "port/linux/daemon/bus.hpp"
 #include "port/linux/daemon/check.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/job_set.hpp"
+#include "port/linux/daemon/log.hpp"
 #include "port/linux/daemon/search_engine.hpp"
 #include "port/linux/daemon/service.hpp"
 #include "port/linux/daemon/stop_signal.hpp"
@@ -17,8 +24,12 @@
 namespace flatpose::daemon {
 namespace {
 
+constexpr int kPortMax = 65535;
+
 struct Options {
   std::string config_path;
+  std::string scan_path;
+  std::optional<int> modbus_port;
   bool only_checks = false;
 };
 
@@ -27,13 +38,9 @@ int say(std::ostream& err, const std::string& line, ExitCode code) {
   return static_cast<int>(code);
 }
 
-void log(std::ostream& err, const std::string& line) {
-  err << "flatposed: " << port::printable(line, 1000) << '\n' << std::flush;
-}
-
-void log(std::ostream& err, const port::Steps& steps) {
+void log(Log& log, const port::Steps& steps) {
   for (const port::Step& step : steps)
-    log(err, (step.is_done ? "" : "warning: not done: ") + port::line_of(step));
+    log.line((step.is_done ? "" : "warning: not done: ") + port::line_of(step));
 }
 
 /// CLI11's message in one line of ours.
@@ -44,34 +51,72 @@ std::string usage_line(const CLI::ParseError& error) {
   return port::InputError("command line", why, "see flatposed --help").line();
 }
 
+/// The file's, with what the command line says instead.
+Config config_of(const Options& options) {
+  Config config = load_config(options.config_path);
+  if (options.modbus_port) {
+    config.modbus.is_on = true;
+    config.modbus.port = *options.modbus_port;
+    config.modbus.place = "--modbus-port";
+  }
+  if (!options.scan_path.empty()) {
+    config.source.replay = options.scan_path;
+    config.source.place = "--scan";
+  }
+  std::error_code error;
+  const std::string& replay = config.source.replay;
+  if (!replay.empty() && !std::filesystem::exists(replay, error))
+    throw port::InputError(config.source.place, "there is no " + replay,
+                           "name a scan or a folder of scans");
+  return config;
+}
+
 /// Until a signal ends it. The service manager hears that the daemon lives only as long as the
-/// search thread answers.
-void serve(SearchEngine& engine, StopSignal& signal) {
+/// search thread answers and the bus goes round.
+void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
   const auto interval = alive_interval();
+  std::uint32_t turns = 0;
   engine.ask();
   while (!signal.wait_for(interval)) {
-    if (!engine.has_answered()) continue;
+    const bool is_bus_alive = bus == nullptr || std::exchange(turns, bus->turns()) != bus->turns();
+    if (!engine.has_answered() || !is_bus_alive) continue;
     tell_alive();
     engine.ask();
   }
 }
 
+void warn(const Config& config, Log& log) {
+  if (!config.modbus.is_on) log.line("warning: no [modbus]: nobody can ask for anything");
+  if (config.source.replay.empty()) log.line("warning: no [source]: there are no scans");
+  if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");
+  if (!config.source.replay.empty() && !config.source.allow_simulated)
+    log.line("warning: replayed scans make no pose without allow_simulated = true in [source]");
+}
+
 void run_service(const Options& options, const Config& config, std::ostream& err,
                  const std::string& root) {
+  const JobSet jobs = load_jobs(config);
   check_memory(options.config_path, config, root);
+  Log events(err);
   StopSignal signal;  // before there are threads, which inherit what is blocked
-  SearchEngine engine(config);
+  SearchEngine engine(config, jobs, events);
+  std::unique_ptr<Bus> bus;
+  if (config.modbus.is_on) bus = std::make_unique<Bus>(config, jobs.rules(), engine);
   const port::ProcessSetup setup(config.realtime, root);
-  log(err, setup.steps());
+  log(events, setup.steps());
   engine.start();
-  log(err, engine.steps());
-  const std::string state =
-      threads_text(config.search) + ", " + std::to_string(held_bytes(config.search) >> 20) + " MB";
+  log(events, engine.steps());
+  if (bus) bus->start();
+  warn(config, events);
+  const std::string state = threads_text(config.search) + ", " +
+                            std::to_string(held_bytes(config.search) >> 20) + " MB" +
+                            (bus ? "; Modbus TCP on " + bus->name() : std::string());
   tell_ready(state);
-  log(err, "ready: " + state + "; no bus is built in yet: SIGTERM ends it");
-  serve(engine, signal);
+  events.line("ready: " + state);
+  serve(engine, bus.get(), signal);
   tell_stopping();
-  log(err, "ended");
+  bus.reset();
+  events.line("ended");
 }
 
 int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
@@ -81,6 +126,13 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
   app.add_option("--config", options.config_path, "what to do, in TOML")
       ->type_name("FILE.toml")
       ->required();
+  app.add_option("--modbus-port", options.modbus_port, "instead of [modbus]'s; 0: any that is free")
+      ->type_name("N")
+      ->check(CLI::Range(0, kPortMax));
+  app.add_option(
+         "--scan", options.scan_path,
+         "replay this file for every trigger, or a folder's files in the order of their names")
+      ->type_name("FILE|DIR");
   app.add_flag("--check", options.only_checks,
                "validate the config, name what the machine lacks for real time, and end");
   try {
@@ -90,8 +142,9 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
     app.exit(error, out, err);
     return static_cast<int>(ExitCode::kDone);
   }
-  const Config config = load_config(options.config_path);
+  const Config config = config_of(options);
   if (options.only_checks) {
+    (void)load_jobs(config);
     out << check_report(options.config_path, config, root) << std::flush;
     if (!out) return say(err, "stdout: cannot write it; check where it goes", ExitCode::kInput);
   } else {

@@ -1,7 +1,7 @@
 #pragma once
 // The program `flatposed` without its main(), so that tests call it in process.
 //
-//   flatposed --config FILE.toml [--check]
+//   flatposed --config FILE.toml [--modbus-port N] [--scan FILE|DIR] [--check]
 //
 // Exit codes: 0 ended by SIGTERM or SIGINT, or the config is valid; 2 usage or config; 3 internal.
 // Errors are one line on `err`: `flatposed: FILE:LINE: WHAT; REMEDY`. What --check finds goes to

@@ -1,64 +1,214 @@
 #include "port/linux/daemon/search_engine.hpp"
 
-#include <memory>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "port/linux/realtime/thread_setup.hpp"
-#include "port/linux/threads/worker_pool.hpp"
 
 namespace flatpose::daemon {
+namespace {
 
-SearchEngine::SearchEngine(const Config& config)
+using Kind = job::SearchEvent::Kind;
+using job::Answer;
+using job::Command;
+
+std::span<float> floats(port::PrefaultedMemory& memory) noexcept {
+  const std::span<std::byte> bytes = memory.span();
+  return {reinterpret_cast<float*>(bytes.data()), bytes.size() / sizeof(float)};
+}
+
+job::ScanResult result_of(const HeldScan* scan, Answer answer) noexcept {
+  job::ScanResult result;
+  result.answer = answer;
+  if (scan == nullptr) return result;
+  result.has_scan = true;
+  result.scan_number = scan->number;
+  result.acquired_us = scan->acquired_us;
+  result.sensor_us = scan->sensor_us;
+  result.is_repeated = scan->is_repeated;
+  result.is_simulated = true;  // a replay is not what lies before the sensor
+  return result;
+}
+
+}  // namespace
+
+SearchEngine::SearchEngine(const Config& config, const JobSet& jobs, Log& log)
     : config_(config),
+      log_(log),
       arena_(locate::Locator::required_bytes(config.search.limits)),
-      scans_{port::PrefaultedMemory(scan_buffer_bytes(config.search.limits)),
-             port::PrefaultedMemory(scan_buffer_bytes(config.search.limits))} {
+      buffers_{port::PrefaultedMemory(scan_buffer_bytes(config.search.limits)),
+               port::PrefaultedMemory(scan_buffer_bytes(config.search.limits))},
+      event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
+      search_(jobs, locator_) {
+  if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
   const Status status = locator_.init(config.search.limits, arena_.span());
   if (status != Status::kOk)
     throw std::runtime_error(std::string("the limits of [search]: ") + to_string(status));
+  if (config.source.replay.empty()) return;
+  const ScanSource::Buffers buffers{floats(buffers_[0]), floats(buffers_[1])};
+  source_ = std::make_unique<ScanSource>(config, buffers, bell_, event_.get());
 }
 
 void SearchEngine::start() {
   thread_ = std::thread([this] { work(); });
   is_ready_.wait(false);
-  if (!failure_) return;
-  stop();
-  std::rethrow_exception(failure_);
+  if (failure_) {
+    stop();
+    std::rethrow_exception(failure_);
+  }
+  if (source_) source_->start();
 }
 
 SearchEngine::~SearchEngine() { stop(); }
 
 void SearchEngine::stop() noexcept {
   is_over_.store(true);
-  call_.fetch_add(1);
-  call_.notify_one();
+  bell_.ring();
   if (thread_.joinable()) thread_.join();
 }
 
+// --- the bus's side
+
 void SearchEngine::ask() noexcept {
   asked_.fetch_add(1);
-  call_.fetch_add(1);
-  call_.notify_one();
+  bell_.ring();
+  if (source_) source_->ask();
 }
 
+void SearchEngine::give(const job::Order& order) noexcept {
+  in_force_.store(
+      order.ticket);  // first: a search that finds it not yet in force would end at once
+  orders_.put(order);
+  bell_.ring();
+}
+
+bool SearchEngine::take(job::SearchEvent& event) noexcept {
+  return (source_ && source_->events().take(event)) || events_.take(event);
+}
+
+// --- the search thread
+
 void SearchEngine::work() noexcept {
-  std::unique_ptr<port::WorkerPool> workers;
   try {
     // Before this thread is set up itself: threads inherit processor and priority from their maker.
-    workers = std::make_unique<port::WorkerPool>(config_.search.thread_count, config_.realtime);
+    workers_ = std::make_unique<port::WorkerPool>(config_.search.thread_count, config_.realtime);
     steps_ = port::set_up_this_thread(config_.realtime, 0, "search 0");
-    port::append(steps_, port::Steps(workers->steps()));
+    port::append(steps_, port::Steps(workers_->steps()));
   } catch (...) {
     failure_ = std::current_exception();
   }
   is_ready_.store(true);
   is_ready_.notify_one();
-  std::uint32_t seen = 0;
   while (!is_over_.load()) {
-    call_.wait(seen);
-    seen = call_.load();
-    answered_.store(asked_.load());
+    const std::uint32_t seen = bell_.seen();
+    answer_asker();
+    job::Order order;
+    if (orders_.take(order)) {
+      execute(order);
+    } else {
+      bell_.wait(seen);
+    }
+  }
+}
+
+void SearchEngine::answer_asker() noexcept {
+  const std::uint32_t asked = asked_.load();
+  if (answered_.exchange(asked) != asked) say(Kind::kSearchAlive, 0);
+}
+
+void SearchEngine::execute(const job::Order& order) noexcept {
+  if (order.kind != job::Order::Kind::kStart) return;
+  const Replaced replaced(*this, order.ticket);
+  switch (order.command) {
+    case Command::kLocate: return locate(order, next_scan(order, replaced), replaced);
+    case Command::kLocateInLast:
+      return locate(order, source_ ? source_->last() : nullptr, replaced);
+    case Command::kCapture: {
+      const HeldScan* const scan = next_scan(order, replaced);
+      return finish(order, result_of(scan, scan == nullptr ? Answer::kNoScan : Answer::kOk));
+    }
+    case Command::kVerifyAlignment: return finish(order, Answer::kNoAlignment);
+    case Command::kSaveScan: return finish(order, Answer::kNotSaved);
+    case Command::kReloadJobs: return finish(order, Answer::kJobsRefused);
+    case Command::kReportPick:
+      note("pick of command " + std::to_string(order.pick_number) + ": outcome " +
+           std::to_string(order.pick_outcome));
+      return finish(order, Answer::kOk);
+    default: return finish(order, Answer::kInternal);
+  }
+}
+
+void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
+                          const Cancel& replaced) noexcept {
+  if (scan == nullptr) return finish(order, Answer::kNoScan);
+  const job::ScanResult found = search_.run(order, *scan, {clock_, *workers_, &replaced});
+  job::ScanResult result = result_of(scan, found.answer);
+  result.frame = found.frame;
+  result.cycle_us = found.cycle_us;
+  result.part_hash = found.part_hash;
+  result.alignment_hash = found.alignment_hash;
+  result.match_count = found.match_count;
+  result.matches = found.matches;
+  finish(order, result);
+}
+
+// The scan of this trigger; null when it could not be read or nobody wants it any more.
+const HeldScan* SearchEngine::next_scan(const job::Order& order, const Cancel& replaced) noexcept {
+  if (!source_) return nullptr;
+  const HeldScan* scan = nullptr;
+  const std::int64_t start_us = clock_.now_us();
+  while (!replaced.is_asked_for()) {
+    const std::uint32_t seen = bell_.seen();
+    answer_asker();
+    scan = source_->take(clock_.now_us());
+    if (scan != nullptr) break;
+    bell_.wait(seen);  // the loader rings, and so do a stop and an ask
+  }
+  if (scan == nullptr) return nullptr;
+  if (!scan->failure.empty()) {
+    note("command " + std::to_string(order.number) + ": " + scan->failure);
+    return nullptr;
+  }
+  source_->waited(clock_.now_us() - start_us);
+  say(Kind::kScanned, order.ticket);
+  return scan;
+}
+
+void SearchEngine::finish(const job::Order& order, Answer answer) noexcept {
+  finish(order, result_of(nullptr, answer));
+}
+
+void SearchEngine::finish(const job::Order& order, const job::ScanResult& result) noexcept {
+  said_ = {Kind::kFinished, order.ticket, result};
+  say_for_certain();
+}
+
+// A sign of life may be lost, the next one comes; what a master waits for may not.
+void SearchEngine::say(Kind kind, std::uint32_t ticket) noexcept {
+  said_ = {kind, ticket, {}};
+  said_.result.is_simulated = true;
+  if (kind != Kind::kSearchAlive) return say_for_certain();
+  const std::uint64_t once = 1;
+  if (events_.put(said_)) (void)!::write(event_.get(), &once, sizeof once);
+}
+
+void SearchEngine::say_for_certain() noexcept {
+  constexpr std::chrono::milliseconds kPause(1);
+  while (!events_.put(said_) && !is_over_.load()) std::this_thread::sleep_for(kPause);
+  const std::uint64_t once = 1;
+  (void)!::write(event_.get(), &once, sizeof once);
+}
+
+void SearchEngine::note(const std::string& text) noexcept {
+  try {
+    log_.line(text);
+  } catch (...) {  // a log that fails costs no answer
   }
 }
 

@@ -1,26 +1,43 @@
 #pragma once
 // The search's own thread, its workers and all memory of a search, taken and set up at the start.
-// Whoever serves a bus never waits for it.
+// Whoever serves a bus never waits for it: orders go in and events come out through mailboxes.
+//
+//   bus thread:  give(order) --Latest-->  search thread  --Queue, eventfd-->  take(event) : bus
+//   thread
+//
+// One order is in force. A newer one, also a stop, ends a search of the older within a fraction of
+// a millisecond, because the search asks for the ticket in force again and again.
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <thread>
 
+#include "flatpose/core/cancel.hpp"
+#include "flatpose/job/order.hpp"
 #include "flatpose/locate/locator.hpp"
+#include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/job_search.hpp"
+#include "port/linux/daemon/job_set.hpp"
+#include "port/linux/daemon/log.hpp"
+#include "port/linux/daemon/mailbox.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
+#include "port/linux/daemon/scan_source.hpp"
+#include "port/linux/modbus/file_descriptor.hpp"
 #include "port/linux/realtime/memory.hpp"
 #include "port/linux/realtime/step.hpp"
+#include "port/linux/threads/worker_pool.hpp"
 
 namespace flatpose::daemon {
 
 class SearchEngine {
  public:
-  /// Takes the memory.  Fails: std::bad_alloc, std::runtime_error when the library refuses the
-  /// limits.
-  explicit SearchEngine(const Config& config);
+  /// Takes the memory. Refers to jobs and log, which must outlive it.  Fails: std::bad_alloc,
+  /// std::system_error, std::runtime_error when the library refuses the limits.
+  SearchEngine(const Config& config, const JobSet& jobs, Log& log);
   ~SearchEngine();
   SearchEngine(const SearchEngine&) = delete;
   SearchEngine& operator=(const SearchEngine&) = delete;
@@ -32,24 +49,65 @@ class SearchEngine {
   /// Of all threads.
   [[nodiscard]] const port::Steps& steps() const noexcept { return steps_; }
 
-  /// Asks the search thread for a sign of life, which it gives between two searches.
+  /// Asks search and scan source for a sign of life; the search gives it between two searches.
   void ask() noexcept;
   /// Whether it has answered all that it was asked.
   [[nodiscard]] bool has_answered() const noexcept { return answered_.load() == asked_.load(); }
 
+  /// The bus's thread: an order takes the place of all before it.  Cost: no wait.
+  void give(const job::Order& order) noexcept;
+  /// The bus's thread: what search and source have to say.  Cost: no wait.
+  [[nodiscard]] bool take(job::SearchEvent& event) noexcept;
+  /// An eventfd that is readable when there is something to take.
+  [[nodiscard]] int event() const noexcept { return event_.get(); }
+
  private:
+  /// Asks whether the order that a search is of is in force no more.
+  class Replaced final : public Cancel {
+   public:
+    Replaced(const SearchEngine& engine, std::uint32_t ticket) noexcept
+        : engine_(engine), ticket_(ticket) {}
+    [[nodiscard]] bool is_asked_for() const noexcept override {
+      return engine_.in_force_.load(std::memory_order_relaxed) != ticket_ ||
+             engine_.is_over_.load(std::memory_order_relaxed);
+    }
+
+   private:
+    const SearchEngine& engine_;
+    std::uint32_t ticket_;
+  };
+
   void work() noexcept;
   void stop() noexcept;
+  void execute(const job::Order& order) noexcept;
+  void locate(const job::Order& order, const HeldScan* scan, const Cancel& replaced) noexcept;
+  [[nodiscard]] const HeldScan* next_scan(const job::Order& order, const Cancel& replaced) noexcept;
+  void finish(const job::Order& order, const job::ScanResult& result) noexcept;
+  void finish(const job::Order& order, job::Answer answer) noexcept;
+  void say(job::SearchEvent::Kind kind, std::uint32_t ticket) noexcept;
+  void say_for_certain() noexcept;
+  void answer_asker() noexcept;
+  void note(const std::string& text) noexcept;
 
   const Config config_;
+  Log& log_;
+  port::SteadyClock clock_;
   port::PrefaultedMemory arena_;
-  std::array<port::PrefaultedMemory, kScanBufferCount> scans_;
+  std::array<port::PrefaultedMemory, kScanBufferCount> buffers_;
+  port::FileDescriptor event_;
   locate::Locator locator_;
+  JobSearch search_;
+  Doorbell bell_;
+  Latest<job::Order> orders_;
+  Queue<job::SearchEvent, 8> events_;
+  job::SearchEvent said_;  ///< The search thread's: an event is some kilobytes.
+  std::unique_ptr<ScanSource> source_;
+  std::unique_ptr<port::WorkerPool> workers_;
   port::Steps steps_;
   std::exception_ptr failure_;         ///< Of the thread's start.
   std::atomic<bool> is_ready_{false};  ///< Steps and failure stand.
   std::atomic<bool> is_over_{false};
-  std::atomic<std::uint32_t> call_{0};  ///< Who sleeps waits for it to change.
+  std::atomic<std::uint32_t> in_force_{0};  ///< The ticket.
   std::atomic<std::uint32_t> asked_{0};
   std::atomic<std::uint32_t> answered_{0};
   std::thread thread_;

@@ -62,6 +62,29 @@ struct Section::Place {
       refuse(node, "'" + key + "' is " + std::to_string(value->get()), "give a number " + allowed);
     return value->get();
   }
+  const toml::array& list_of(const toml::node& node, const std::string& key,
+                             const std::string& example, std::size_t count_max) const {
+    const toml::array* const list = node.as_array();
+    if (list == nullptr)
+      refuse(node, "'" + key + "' is not a list", "give one, e.g. " + key + " = " + example);
+    if (list->size() > count_max)
+      refuse(node, "'" + key + "' has " + std::to_string(list->size()) + " values",
+             "give " + std::to_string(count_max) + " at most");
+    return *list;
+  }
+  double number_of(const toml::node& node, const std::string& key, double least,
+                   double greatest) const {
+    const std::string allowed = range_text(shortest(least), shortest(greatest));
+    if (!node.is_number()) refuse(node, "'" + key + "' is not a number", "give one " + allowed);
+    const double value = node.value<double>().value_or(std::nan(""));
+    if (!(value >= least && value <= greatest))
+      refuse(node, "'" + key + "' is " + shortest(value), "give a number " + allowed);
+    return value;
+  }
+  std::string text_of(const toml::node& node, const std::string& key) const {
+    if (!node.is_string()) refuse(node, "'" + key + "' is not a text", "put it in quotes");
+    return node.as_string()->get();
+  }
   [[nodiscard]] std::shared_ptr<Place> inside(const toml::table* other,
                                               const std::string& title) const {
     auto place = std::make_shared<Place>();
@@ -104,26 +127,29 @@ std::vector<std::int64_t> Section::wholes(const std::string& key, Range range,
   std::vector<std::int64_t> values;
   const toml::node* const node = place_->find(key);
   if (node == nullptr) return values;
-  const toml::array* const list = node->as_array();
-  if (list == nullptr)
-    place_->refuse(*node, "'" + key + "' is not a list", "give one, e.g. " + key + " = [1, 2]");
-  if (list->size() > count_max)
-    place_->refuse(*node, "'" + key + "' has " + std::to_string(list->size()) + " values",
-                   "give " + std::to_string(count_max) + " at most");
-  for (const toml::node& element : *list) values.push_back(place_->whole_of(element, key, range));
+  const toml::array& list = place_->list_of(*node, key, "[1, 2]", count_max);
+  for (const toml::node& element : list) values.push_back(place_->whole_of(element, key, range));
   return values;
 }
 
 std::optional<double> Section::number(const std::string& key, double least, double greatest) {
   const toml::node* const node = place_->find(key);
   if (node == nullptr) return std::nullopt;
-  const std::string allowed = range_text(shortest(least), shortest(greatest));
-  if (!node->is_number())
-    place_->refuse(*node, "'" + key + "' is not a number", "give one " + allowed);
-  const double value = node->value<double>().value_or(std::nan(""));
-  if (!(value >= least && value <= greatest))
-    place_->refuse(*node, "'" + key + "' is " + shortest(value), "give a number " + allowed);
-  return value;
+  return place_->number_of(*node, key, least, greatest);
+}
+
+std::vector<double> Section::numbers(const std::string& key, double least, double greatest,
+                                     std::size_t count) {
+  std::vector<double> values;
+  const toml::node* const node = place_->find(key);
+  if (node == nullptr) return values;
+  const toml::array& list = place_->list_of(*node, key, "[-100, 100]", count);
+  if (list.size() != count)
+    place_->refuse(*node, "'" + key + "' has " + std::to_string(list.size()) + " values",
+                   "give " + std::to_string(count));
+  for (const toml::node& element : list)
+    values.push_back(place_->number_of(element, key, least, greatest));
+  return values;
 }
 
 std::optional<bool> Section::flag(const std::string& key) {
@@ -137,8 +163,34 @@ std::optional<bool> Section::flag(const std::string& key) {
 std::optional<std::string> Section::text(const std::string& key) {
   const toml::node* const node = place_->find(key);
   if (node == nullptr) return std::nullopt;
-  if (!node->is_string()) place_->refuse(*node, "'" + key + "' is not a text", "put it in quotes");
-  return node->as_string()->get();
+  return place_->text_of(*node, key);
+}
+
+std::vector<std::string> Section::texts(const std::string& key, std::size_t count_max) {
+  std::vector<std::string> values;
+  const toml::node* const node = place_->find(key);
+  if (node == nullptr) return values;
+  for (const toml::node& element : place_->list_of(*node, key, "[\"a\", \"b\"]", count_max))
+    values.push_back(place_->text_of(element, key));
+  return values;
+}
+
+std::optional<int> Section::choice(const std::string& key, const std::vector<std::string>& words) {
+  const std::optional<std::string> word = text(key);
+  if (!word) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), *word);
+  if (found == words.end())
+    fail(key, "'" + key + "' is \"" + port::printable(*word, 60) + "\"",
+         "give one of: " + listed(words));
+  return static_cast<int>(found - words.begin());
+}
+
+bool Section::is_there() const noexcept { return place_->table != nullptr; }
+
+std::string Section::place_of(const std::string& key) const {
+  const toml::node* const node = place_->table == nullptr ? nullptr : place_->table->get(key);
+  const unsigned at_line = node == nullptr ? place_->line : node->source().begin.line;
+  return place_->path + ":" + std::to_string(at_line);
 }
 
 std::optional<std::string> Section::file(const std::string& key) {

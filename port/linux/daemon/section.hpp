@@ -31,13 +31,24 @@ class Section {
                                                  std::size_t count_max);
   [[nodiscard]] std::optional<double> number(const std::string& key, double least, double greatest);
   [[nodiscard]] std::optional<bool> flag(const std::string& key);
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, double least, double greatest,
+                                            std::size_t count);
   [[nodiscard]] std::optional<std::string> text(const std::string& key);
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key, std::size_t count_max);
+  /// The index of the text among `words`.
+  [[nodiscard]] std::optional<int> choice(const std::string& key,
+                                          const std::vector<std::string>& words);
   /// A path; a relative one starts where the config file is.
   [[nodiscard]] std::optional<std::string> file(const std::string& key);
   /// [key]; one that is not there is empty.
   [[nodiscard]] Section section(const std::string& key);
   /// [[key]], in their order.
   [[nodiscard]] std::vector<Section> sections(const std::string& key);
+
+  /// Whether the file has it.
+  [[nodiscard]] bool is_there() const noexcept;
+  /// "FILE:LINE", of the value or, when it is not there, of the section.
+  [[nodiscard]] std::string place_of(const std::string& key) const;
 
   /// Refuses what was not asked for, with what may have been meant.
   void finish() const;

@@ -1,0 +1,103 @@
+#include "port/linux/daemon/bus.hpp"
+
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace flatpose::daemon {
+namespace {
+
+constexpr std::int64_t kAskEvery_us = 500'000;
+/// A search that works all its time on a slow machine is alive.
+constexpr std::int64_t kLivenessLimit_us = 5'000'000;
+/// More than both mailboxes hold.
+constexpr int kEventsPerTurn = 16;
+
+std::uint16_t random_session() {
+  std::uint16_t session = 0;
+  while (session == 0) {
+    if (getrandom(&session, sizeof session, 0) != sizeof session)
+      throw std::runtime_error("the system gives no random numbers");
+  }
+  return session;
+}
+
+job::Config machine_config(const Config& config) {
+  job::Config made;
+  made.session_id = random_session();
+  made.handshake = config.modbus.handshake;
+  made.allow_simulated = config.source.allow_simulated;
+  made.lease_us = config.modbus.lease_us;
+  made.liveness_limit_us = kLivenessLimit_us;
+  return made;
+}
+
+modbus::Settings settings_of(const ModbusConfig& config) {
+  modbus::Settings settings;
+  settings.format = config.format;
+  settings.own_unit = config.unit;
+  settings.identity.revision = FLATPOSE_VERSION;
+  return settings;
+}
+
+}  // namespace
+
+Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine)
+    : engine_(engine),
+      modbus_(machine_, executor_, settings_of(config.modbus)),
+      server_(config.modbus.place, config.modbus.bind, config.modbus.port, engine.event()) {
+  if (machine_.init(machine_config(config), jobs, clock_.now_us()) != Status::kOk)
+    throw std::runtime_error("the job machine refuses its jobs");
+}
+
+void Bus::start() {
+  thread_ = std::thread([this] { work(); });
+}
+
+Bus::~Bus() {
+  is_over_.store(true);
+  const std::uint64_t once = 1;
+  (void)!::write(engine_.event(), &once, sizeof once);
+  if (thread_.joinable()) thread_.join();
+}
+
+void Bus::work() noexcept {
+  while (!is_over_.load()) {
+    turns_.fetch_add(1);
+    if (clock_.now_us() >= ask_us_) {
+      ask_us_ = clock_.now_us() + kAskEvery_us;
+      engine_.ask();
+    }
+    server_.wait(next_us() - clock_.now_us());
+    take_events();
+    server_.serve(clock_.now_us(), *this);
+    if (clock_.now_us() >= machine_us_) pass_on(machine_.process(clock_.now_us(), {}));
+  }
+}
+
+std::int64_t Bus::next_us() const noexcept {
+  return std::min({machine_us_, ask_us_, server_.deadline_us()});
+}
+
+void Bus::take_events() noexcept {
+  for (int i = 0; i < kEventsPerTurn && engine_.take(event_); ++i)
+    pass_on(machine_.process(clock_.now_us(), {.event = &event_}));
+}
+
+void Bus::pass_on(const job::Outputs& outputs) noexcept {
+  machine_us_ = outputs.next_us;
+  if (outputs.order.kind != job::Order::Kind::kNone) engine_.give(outputs.order);
+}
+
+std::size_t Bus::respond(const job::Master& master, const modbus::Adu& adu,
+                         std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept {
+  const modbus::Served served = modbus_.serve(clock_.now_us(), master, adu, response);
+  pass_on(served.outputs);
+  return served.bytes;
+}
+
+job::Address Bus::owner() const noexcept { return machine_.snapshot(job::kNobody).owner_address; }
+
+}  // namespace flatpose::daemon

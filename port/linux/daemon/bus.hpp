@@ -1,0 +1,58 @@
+#pragma once
+// The bus's thread: the job machine, the Modbus server before it and the search behind it. It waits
+// for sockets and for the search alike, in one place, and for nothing else.
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "flatpose/job/machine.hpp"
+#include "flatpose/modbus/server.hpp"
+#include "port/linux/clock/steady_clock.hpp"
+#include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/search_engine.hpp"
+#include "port/linux/modbus/executor.hpp"
+#include "port/linux/modbus/tcp_server.hpp"
+
+namespace flatpose::daemon {
+
+class Bus final : private port::Responder {
+ public:
+  /// Listens from now on. Refers to the engine, which must outlive it.
+  /// Fails: port::InputError when it cannot listen there, std::system_error.
+  Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  void start();
+  /// "127.0.0.1:502"
+  [[nodiscard]] std::string name() const { return server_.name(); }
+  /// Counts the turns of the thread, of which there are some every second.
+  [[nodiscard]] std::uint32_t turns() const noexcept { return turns_.load(); }
+
+ private:
+  std::size_t respond(const job::Master& master, const modbus::Adu& adu,
+                      std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept override;
+  [[nodiscard]] job::Address owner() const noexcept override;
+  void work() noexcept;
+  void take_events() noexcept;
+  void pass_on(const job::Outputs& outputs) noexcept;
+  [[nodiscard]] std::int64_t next_us() const noexcept;
+
+  SearchEngine& engine_;
+  port::SteadyClock clock_;
+  job::Machine machine_;
+  port::LibmodbusExecutor executor_;
+  modbus::Server modbus_;
+  port::TcpServer server_;
+  job::SearchEvent event_;
+  std::int64_t machine_us_ = 0;  ///< When the machine wants to be called.
+  std::int64_t ask_us_ = 0;      ///< When search and source are asked for a sign of life.
+  std::atomic<bool> is_over_{false};
+  std::atomic<std::uint32_t> turns_{0};
+  std::thread thread_;
+};
+
+}  // namespace flatpose::daemon

@@ -1,0 +1,128 @@
+#include "port/linux/daemon/job_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flatpose/core/maths.hpp"
+
+namespace flatpose::daemon {
+namespace {
+
+using job::Answer;
+
+/// Which of two answers a job of several parts ends with: what ended all comes first, then what was
+/// found, with its warning, then why nothing was.
+int rank(Answer answer) noexcept {
+  switch (answer) {
+    case Answer::kCancelled: return 0;
+    case Answer::kInternal: return 1;
+    case Answer::kBadJob: return 2;
+    case Answer::kDeadline: return 3;
+    case Answer::kAmbiguous: return 4;
+    case Answer::kOk: return 5;
+    case Answer::kOutsideLimits: return 6;
+    case Answer::kScanPoor: return 7;
+    case Answer::kNoMatch: return 8;
+    default: return 9;
+  }
+}
+
+Answer answer_of_fault(Status status) noexcept {
+  const bool is_of_job = status == Status::kInvalidArgument || status == Status::kTooLarge;
+  return is_of_job ? Answer::kBadJob : Answer::kInternal;
+}
+
+bool is_inside(const Pose& face_T_object, const Frames& frames, const PoseLimits& limits) noexcept {
+  const Vec3& p = face_T_object.position_mm;
+  const Vec3& low = limits.least_mm;
+  const Vec3& high = limits.greatest_mm;
+  const bool is_in_box = p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y &&
+                         p.z >= low.z && p.z <= high.z;
+  const Rotation work_R_object = frames.work_T_face().rotation * face_T_object.rotation;
+  return is_in_box && std::acos(std::clamp(work_R_object.m[8], -1.0, 1.0)) <= limits.tilt_rad;
+}
+
+/// As the locator orders the matches of one part.
+double merit(const job::FoundMatch& match, locate::Order order, const Frames& frames) noexcept {
+  switch (order) {
+    case locate::Order::kHeight: return (frames.work_T_face() * match.frame_T_pick.position_mm).z;
+    case locate::Order::kVisible: return match.visible;
+    case locate::Order::kScore: break;
+  }
+  return match.score * match.visible;
+}
+
+}  // namespace
+
+job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
+                               const Host& host) noexcept {
+  start_us_ = host.clock.now_us();
+  result_ = {};
+  result_.answer = Answer::kPending;
+  outside_count_ = 0;
+  job_ = set_.find(order.job);
+  if (job_ == nullptr) {
+    result_.answer = Answer::kBadJob;
+    return result_;
+  }
+  result_.frame = job_->config.rule.frame;
+  result_.alignment_hash = job_->alignment_hash;
+  const bool is_aligned = result_.frame == job::FrameName::kWork;
+  frames_ = is_aligned ? job_->work : frames_of_scan(scan.up == port::Up::kPlusZ);
+  int index = 0;
+  for (const int part : job_->config.parts) search_part(part, ++index, order, scan, host);
+  if (result_.match_count == 0 && job::may_have_pose(result_.answer))
+    result_.answer = outside_count_ > 0 ? Answer::kOutsideLimits : Answer::kNoMatch;
+  if (!job::may_have_pose(result_.answer)) result_.match_count = 0;
+  if (result_.match_count > 0) {
+    const auto best = static_cast<std::size_t>(result_.matches[0].part - 1);
+    result_.part_hash = set_.parts[static_cast<std::size_t>(job_->config.parts[best])].hash;
+  }
+  const std::int64_t took_us = host.clock.now_us() - start_us_;
+  result_.cycle_us =
+      static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, UINT32_MAX - 1));
+  return result_;
+}
+
+void JobSearch::search_part(int part, int index, const job::Order& order, const HeldScan& scan,
+                            const Host& host) noexcept {
+  locate::LocateConfig config = job_->config.locate;
+  const std::int64_t now_us = host.clock.now_us();
+  const std::int64_t end_us = std::min(order.answer_by_us, start_us_ + config.deadline_us);
+  config.deadline_us = std::max<std::int64_t>(end_us - now_us, 1);
+  const auto& model = *set_.parts[static_cast<std::size_t>(part)].model;
+  const Status status = locator_.locate(model, scan.view, frames_, config, host, *found_);
+  Answer answer = answer_of_fault(status);
+  if (status == Status::kOk) {
+    add_matches(index);
+    answer = job::answer_of(found_->outcome);
+  }
+  const bool is_first = result_.answer == Answer::kPending;
+  if (is_first || rank(answer) < rank(result_.answer)) result_.answer = answer;
+}
+
+// Into their places among those of the parts before; the last fall off.
+void JobSearch::add_matches(int index) noexcept {
+  const locate::LocateConfig& config = job_->config.locate;
+  for (const locate::Match& match : found_->found()) {
+    if (!is_inside(match.face_T_object, frames_, job_->config.limits)) {
+      ++outside_count_;
+      continue;
+    }
+    job::FoundMatch added{match.face_T_object, static_cast<std::uint16_t>(index),
+                          match.score,         match.visible,
+                          match.sigma_mm,      match.sigma_rad};
+    if (match.turn_is_free) added.sigma_rad.z = std::numeric_limits<double>::quiet_NaN();
+    const double value = merit(added, config.order, frames_);
+    int place = result_.match_count;
+    while (place > 0 && merit(result_.matches[place - 1], config.order, frames_) < value) --place;
+    if (place >= config.max_matches) continue;
+    result_.match_count = std::min(result_.match_count + 1, config.max_matches);
+    const auto begin = result_.matches.begin();
+    std::move_backward(begin + place, begin + result_.match_count - 1, begin + result_.match_count);
+    result_.matches[place] = added;
+  }
+}
+
+}  // namespace flatpose::daemon

@@ -1,0 +1,40 @@
+#pragma once
+// A job in a scan: each of its parts searched, what was found put in order, held against the job's
+// limits, and told as the job machine wants it.
+
+#include <memory>
+
+#include "flatpose/core/host.hpp"
+#include "flatpose/job/order.hpp"
+#include "flatpose/locate/locator.hpp"
+#include "port/linux/daemon/job_set.hpp"
+#include "port/linux/daemon/scan_source.hpp"
+
+namespace flatpose::daemon {
+
+class JobSearch {
+ public:
+  /// Refers to both, which must outlive it.
+  JobSearch(const JobSet& set, locate::Locator& locator)
+      : set_(set), locator_(locator), found_(std::make_unique<locate::LocateResult>()) {}
+
+  /// Until the order's time is over, or the host cancels.  Memory: none.  Fails: never, see answer.
+  [[nodiscard]] job::ScanResult run(const job::Order& order, const HeldScan& scan,
+                                    const Host& host) noexcept;
+
+ private:
+  void search_part(int part, int index, const job::Order& order, const HeldScan& scan,
+                   const Host& host) noexcept;
+  void add_matches(int index) noexcept;
+
+  const JobSet& set_;
+  locate::Locator& locator_;
+  std::unique_ptr<locate::LocateResult> found_;
+  const Job* job_ = nullptr;
+  Frames frames_;
+  job::ScanResult result_;
+  std::int64_t start_us_ = 0;
+  int outside_count_ = 0;
+};
+
+}  // namespace flatpose::daemon

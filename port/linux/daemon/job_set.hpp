@@ -1,0 +1,37 @@
+#pragma once
+// The jobs ready to run: templates read, work planes read, and the rules that the job machine
+// needs.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "flatpose/geometry/frames.hpp"
+#include "flatpose/model/template.hpp"
+#include "port/linux/daemon/config.hpp"
+
+namespace flatpose::daemon {
+
+struct Part {
+  std::unique_ptr<model::Template> model;
+  std::uint32_t hash = 0;  ///< Of the file.
+};
+
+struct Job {
+  JobConfig config;
+  Frames work;  ///< With frame "work".
+  std::uint32_t alignment_hash = 0;
+};
+
+struct JobSet {
+  std::vector<Part> parts;
+  std::vector<Job> jobs;
+
+  [[nodiscard]] const Job* find(std::uint16_t number) const noexcept;
+  [[nodiscard]] job::JobTable rules() const;
+};
+
+/// Reads all that the jobs need.  Fails: port::InputError.
+[[nodiscard]] JobSet load_jobs(const Config& config);
+
+}  // namespace flatpose::daemon
