@@ -116,6 +116,68 @@ TEST(Config, ThatCannotBeReadSaysSo) {
   port::expect_input_error([&] { (void)load_config(big); }, {"big.toml"});
 }
 
+TEST(Config, HoldsBusSourceAndJobs) {
+  const Config config = parse_config(
+      kPath,
+      "[modbus]\nbind = \"127.0.0.1\"\nport = 1502\nunit = 9\nword_order = \"BADC\"\n"
+      "no_pose_int32 = -1\nhandshake = \"bits\"\nlease_ms = 700\n"
+      "[source]\nreplay = \"s.pcd\"\nup = \"+z\"\n"
+      "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n[[part]]\nname = \"b\"\nfile = \"/b.fpt\"\n"
+      "[[job]]\nparts = [\"b\", \"a\"]\nnumber = 5\nframe = \"work\"\nwork = \"w.json\"\n"
+      "convention = \"zyz\"\nmax_matches = 32\nmax_age_ms = 300\nanswer_by_ms = 1000\n"
+      "region = \"circle:1,2,3\"\norder = \"height\"\nlimit_y_mm = [-1, 2.5]\n"
+      "[[job]]\nparts = [\"a\"]\n");
+  EXPECT_TRUE(config.modbus.is_on);
+  EXPECT_EQ(config.modbus.bind, "127.0.0.1");
+  EXPECT_EQ(config.modbus.port, 1502);
+  EXPECT_EQ(config.modbus.unit, 9);
+  EXPECT_EQ(config.modbus.format.order, result_map::WordOrder::kBadc);
+  EXPECT_EQ(config.modbus.format.none_int32, 0xffffffffU);
+  EXPECT_EQ(config.modbus.handshake, job::Handshake::kBits);
+  EXPECT_EQ(config.modbus.lease_us, 700'000);
+  EXPECT_EQ(config.source.replay, "dir/s.pcd");
+  EXPECT_EQ(config.source.up, port::Up::kPlusZ);
+  EXPECT_FALSE(config.source.allow_simulated);
+  EXPECT_EQ(config.parts.at(0).file, "dir/a.fpt");
+  EXPECT_EQ(config.parts.at(1).file, "/b.fpt");
+  const JobConfig& job = config.jobs.at(0);
+  EXPECT_EQ(job.parts, (std::vector<int>{1, 0}));
+  EXPECT_EQ(job.rule.job, 5);
+  EXPECT_EQ(job.rule.frame, job::FrameName::kWork);
+  EXPECT_EQ(job.work_file, "dir/w.json");
+  EXPECT_EQ(job.rule.convention, Convention::kZyz);
+  EXPECT_EQ(job.rule.max_age_us, 300'000);
+  EXPECT_EQ(job.rule.answer_by_us, 1'000'000);
+  EXPECT_EQ(job.locate.deadline_us, 900'000);
+  EXPECT_EQ(job.locate.max_matches, 32);
+  EXPECT_EQ(job.locate.order, locate::Order::kHeight);
+  EXPECT_EQ(job.locate.region.kind, Region::Kind::kCircle);
+  EXPECT_EQ(job.limits.least_mm.y, -1.0);
+  EXPECT_EQ(job.limits.greatest_mm.y, 2.5);
+  EXPECT_EQ(config.jobs.at(1).rule.job, 1);
+  EXPECT_FALSE(parse_config(kPath, "").modbus.is_on);
+}
+
+TEST(Config, RefusesJobsThatCannotBeRun) {
+  const std::string part = "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n";
+  expect_refused("[[job]]\nnumber = 1\n", {"dir/f.toml:1: ", "needs 'parts'"});
+  expect_refused("[[job]]\nparts = [\"a\"]\n", {"dir/f.toml:2: ", "no part \"a\"", "[[part]]"});
+  expect_refused(part + "[[job]]\nparts = [\"a\"]\n[[job]]\nparts = [\"a\"]\n", {"two jobs"});
+  expect_refused(part + part, {"dir/f.toml:5: ", "two parts"});
+  expect_refused("[[part]]\nname = \"a\"\n", {"needs a file"});
+  const std::string job = part + "[[job]]\nparts = [\"a\"]\n";
+  expect_refused(job + "number = 0\n", {"dir/f.toml:6: "});
+  expect_refused(job + "frame = \"work\"\n", {"dir/f.toml:6: ", "flatpose align"});
+  expect_refused(job + "frame = \"robot\"\n", {"dir/f.toml:6: ", "scan, work"});
+  expect_refused(job + "region = \"circle:1\"\n", {"dir/f.toml:6: region", "circle:X,Y,R"});
+  expect_refused(job + "limit_z_mm = [2, 1]\n", {"dir/f.toml:6: ", "runs backwards"});
+  expect_refused(job + "limit_z_mm = [2]\n", {"dir/f.toml:6: ", "give 2"});
+  expect_refused(job + "max_matches = 33\n", {"dir/f.toml:6: "});
+  expect_refused("[modbus]\nword_order = \"abcd\"\n", {"dir/f.toml:2: ", "ABCD, CDAB"});
+  expect_refused("[modbus]\nport = 65536\n", {"dir/f.toml:2: "});
+  expect_refused("[source]\nup = \"z\"\n", {"dir/f.toml:2: ", "+z, -z"});
+}
+
 TEST(Config, OfTheExampleIsTheUsualOne) {
   const Config example = load_config(FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml");
   const Config usual = parse_config(kPath, "");

@@ -69,6 +69,24 @@ TEST(Daemon, RefusesABadConfigWithItsLine) {
   }
 }
 
+TEST(Daemon, RefusesFilesOfTheConfigThatCannotBeUsed) {
+  const port::TemporaryFolder folder;
+  const std::string job = "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n[[job]]\nparts = [\"a\"]\n";
+  const std::string path = folder.write("f.toml", kSmall + job);
+  expect_refused(run({"--config", path, "--check"}), "a.fpt");
+  folder.write("a.fpt", "no template");
+  expect_refused(run({"--config", path, "--check"}), "teach the part again");
+  expect_refused(run({"--config", folder.write("g.toml", kSmall), "--scan", "/nowhere", "--check"}),
+                 "--scan: there is no /nowhere");
+  expect_refused(run({"--config", path, "--modbus-port", "65536"}), "--modbus-port");
+}
+
+TEST(Check, OfTheExampleIsContent) {
+  const Ran ran =
+      run({"--config", FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml", "--check"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+}
+
 TEST(Check, OfAGoodMachineHasNothingToMend) {
   const port::MadeMachine machine;
   const port::TemporaryFolder folder;
