@@ -55,7 +55,8 @@ struct Match {
   Pose face_T_object;
   double score = 0.0;
   double visible = 0.0;
-  Vec3 sigma_mm;              ///< Standard deviation of the position along the face's axes.
+  Vec3 sigma_mm;              ///< Standard deviation of the position along the face's axes. What
+                              ///< teach measured amiss, alike in every scan, is not in it.
   Vec3 sigma_rad;             ///< Of the turn about the object's own axes.
   bool turn_is_free = false;  ///< Full symmetry: sigma_rad.z means nothing.
   double edge_rms_mm = 0.0;

@@ -61,6 +61,20 @@ class PolishProblem {
     return true;
   }
 
+  /// What the scan tells about h: one over the covariance. `hessian` is evaluate()'s there, in
+  /// which a robust loss makes the surface look surer than it is: weighing down the far points of
+  /// plain noise lowers the rms that the rest is weighed by. With psi = r w(r), points tell
+  ///   (2)  (sum psi')^2 / sum psi^2   instead of   sum w / rms^2         (Huber 1981, 6.3).
+  [[nodiscard]] Matrix<6> information(const Vector<6>& h, const Matrix<6>& hessian) const noexcept {
+    NormalEquations<6> surface;
+    add_surface(h, &surface);
+    const double told_too_much = 1.0 - surface_efficiency(h);
+    Matrix<6> out = hessian;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) out(i, j) -= told_too_much * surface.hessian(i, j);
+    return out;
+  }
+
   [[nodiscard]] Fit surface_fit(const Vector<6>& h) const noexcept {
     const SurfaceSums s = surface_sums(h);
     return {s.wrr, s.w};
@@ -85,6 +99,26 @@ class PolishProblem {
     SurfaceSums sums;
     sum_surface_(scratch_.footprint, {h[0], h[1], h[5]}, surface_reach_mm_, sums);
     return sums;
+  }
+
+  // The quotient of the two sides of (2), from every few points: they are many.
+  [[nodiscard]] double surface_efficiency(const Vector<6>& h) const noexcept {
+    constexpr int kStride = 4;
+    const Footprint& f = scratch_.footprint;
+    double weight = 0.0;
+    double slope = 0.0;
+    double psi2 = 0.0;
+    for (int i = 0; i < f.count; i += kStride) {
+      const double r = f.above_mm[i] - (f.y_mm[i] * h[0] - f.x_mm[i] * h[1]) - h[5];
+      const double share = r * r / (surface_reach_mm_ * surface_reach_mm_);
+      if (share >= 1.0) continue;
+      const double u = 1.0 - share;
+      weight += u * u;
+      slope += u * (5.0 * u - 4.0);  // psi'
+      psi2 += r * r * u * u * u * u;
+    }
+    const double told = surface_weight_ * weight * psi2;
+    return told > slope * slope ? std::max(slope, 0.0) * slope / told : 1.0;
   }
 
   // (1) with g = z: a row is (-y, x, -1) for the turns about x and y and the shift along z.
@@ -250,7 +284,8 @@ Result<PolishResult> polish(const model::Template& part, const RawScan& raw,
     // What was met so well is weighed so: the next round's Hessian is then one over the covariance.
     sigmas.surface_mm = std::max(surface.rms(), kSigmaMin * part.pitch_mm);
     sigmas.contour_mm = std::max(contour.rms(), kSigmaMin * part.pitch_mm);
-    if (const auto c = covariance<6>(minimum.hessian))
+    if (!is_last) continue;
+    if (const auto c = covariance<6>(problem.information(minimum.x, minimum.hessian)))
       std::copy_n(c->matrix.data(), out.covariance.size(), out.covariance.begin());
   }
   out.turn_is_free = part.symmetry.order == model::kFullSymmetry;

@@ -4,7 +4,11 @@
 #include <cerrno>
 #include <cstddef>
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define FLATPOSE_SANITIZER_OWNS_MALLOC
+#endif
+
+#if defined(FLATPOSE_SANITIZER_OWNS_MALLOC)
 // Of <sanitizer/allocator_interface.h>, which Debian's g++ does not bring.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*,
                                                                            std::size_t),
@@ -15,7 +19,7 @@ namespace {
 
 std::atomic<long> allocation_count{0};
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(FLATPOSE_SANITIZER_OWNS_MALLOC)
 // The sanitizer owns malloc and new; it tells of each call.
 void on_malloc(const volatile void*, std::size_t) { ++allocation_count; }
 void on_free(const volatile void*) {}
@@ -24,7 +28,7 @@ const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(on_malloc,
 
 }  // namespace
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(FLATPOSE_SANITIZER_OWNS_MALLOC)
 // glibc's own, which ours stand in front of. new and aligned new end up here too.
 extern "C" {
 void* __libc_malloc(std::size_t size_bytes);

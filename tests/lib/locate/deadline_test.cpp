@@ -63,6 +63,7 @@ void expect_cut_short(const LocateResult& found, const LocateResult& whole) {
                 ->score
           : 0.0;
   EXPECT_EQ(found.bound_gap, 1.0 - best);
+  for (const Match& m : whole.found()) EXPECT_LE(m.score - best, found.bound_gap);
   for (const Match& m : found.found()) {
     EXPECT_TRUE(std::any_of(whole.found().begin(), whole.found().end(), [&](const Match& other) {
       return other.face_T_object.position_mm == m.face_T_object.position_mm &&
