@@ -9,7 +9,7 @@ namespace {
 
 /// Torn when its parts differ.
 struct Wide {
-  std::array<std::uint64_t, 40> parts{};
+  std::array<std::uint64_t, 512> parts{};  // long to copy, so that the threads meet
 
   Wide() = default;
   explicit Wide(std::uint64_t value) { parts.fill(value); }
@@ -20,7 +20,7 @@ struct Wide {
   }
 };
 
-constexpr std::uint64_t kValues = 200'000;
+constexpr std::uint64_t kValues = 100'000;
 
 TEST(Latest, GivesTheNewestOnce) {
   Latest<int> box;

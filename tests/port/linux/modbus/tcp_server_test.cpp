@@ -158,20 +158,24 @@ TEST_F(TcpServerTest, StreamThatIsNoModbusIsClosed) {
   EXPECT_TRUE(echo.masters.empty());
 }
 
-TEST_F(TcpServerTest, ClientThatReadsNoAnswersCostsItselfAlone) {
-  Peer deaf(server.port(), 2048);
-  Peer good(server.port());
-  const Bytes large = frame(1, modbus::kPduBytesMax);
-  const Bytes small = frame(2);
+/// Whole frames, until the system takes no more of them and the server's own sending has to stop.
+std::size_t stuff(const Peer& peer, const Bytes& one, TcpServer& server, Echo& echo,
+                  std::int64_t now_us) {
   std::size_t sent = 0;
   for (int i = 0; i < 100'000 && server.deadline_us() == Client::kNever_us; ++i) {
-    // Whole frames until the system takes no more: then the server's own sending has to stop too.
-    sent +=
-        deaf.send({large.begin() + static_cast<std::ptrdiff_t>(sent % large.size()), large.end()});
+    sent += peer.send({one.begin() + static_cast<std::ptrdiff_t>(sent % one.size()), one.end()});
     server.wait(0);
     server.serve(now_us, echo);
   }
-  ASSERT_NE(server.deadline_us(), Client::kNever_us);
+  EXPECT_NE(server.deadline_us(), Client::kNever_us);
+  return sent;
+}
+
+TEST_F(TcpServerTest, ClientThatReadsNoAnswersCostsItselfAlone) {
+  Peer deaf(server.port(), 2048);
+  Peer good(server.port());
+  const Bytes small = frame(2);
+  stuff(deaf, frame(1, modbus::kPduBytesMax), server, echo, now_us);
   good.send(small);
   EXPECT_EQ(answer(good, small.size()), small);
   for (int i = 0; i < 20 && server.client_count() == 2; ++i) {
@@ -181,6 +185,22 @@ TEST_F(TcpServerTest, ClientThatReadsNoAnswersCostsItselfAlone) {
   EXPECT_EQ(server.client_count(), 1);
   good.send(small);
   EXPECT_EQ(answer(good, small.size()), small);
+}
+
+TEST_F(TcpServerTest, ClientThatReadsLateGetsAllAnswers) {
+  Peer late(server.port(), 2048);
+  const Bytes one = frame(1, modbus::kPduBytesMax);
+  const std::size_t sent = stuff(late, one, server, echo, now_us);
+  std::size_t got = 0;
+  std::size_t wrong = 0;
+  const std::size_t whole = sent - sent % one.size();
+  for (int i = 0; i < 1'000'000 && got < whole && !late.is_closed(); ++i) {
+    server.wait(0);
+    server.serve(now_us, echo);
+    for (const std::uint8_t byte : late.received()) wrong += byte != one[got++ % one.size()];
+  }
+  EXPECT_EQ(got, whole);
+  EXPECT_EQ(wrong, 0U);
 }
 
 TEST_F(TcpServerTest, SeventeenthTakesTheSeatOfOneThatNeverSpoke) {
