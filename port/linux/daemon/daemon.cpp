@@ -76,12 +76,12 @@ Config config_of(const Options& options) {
 void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
   const auto interval = alive_interval();
   std::uint32_t turns = 0;
-  engine.ask();
+  std::uint32_t asked = engine.ask();
   while (!signal.wait_for(interval)) {
     const bool is_bus_alive = bus == nullptr || std::exchange(turns, bus->turns()) != bus->turns();
-    if (!engine.has_answered() || !is_bus_alive) continue;
+    if (!engine.has_answered(asked) || !is_bus_alive) continue;
     tell_alive();
-    engine.ask();
+    asked = engine.ask();
   }
 }
 

@@ -75,10 +75,11 @@ void SearchEngine::stop() noexcept {
 
 // --- the bus's side
 
-void SearchEngine::ask() noexcept {
-  asked_.fetch_add(1);
+std::uint32_t SearchEngine::ask() noexcept {
+  const std::uint32_t asked = asked_.fetch_add(1) + 1;
   bell_.ring();
   if (source_) source_->ask();
+  return asked;
 }
 
 void SearchEngine::give(const job::Order& order) noexcept {

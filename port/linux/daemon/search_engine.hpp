@@ -50,9 +50,12 @@ class SearchEngine {
   [[nodiscard]] const port::Steps& steps() const noexcept { return steps_; }
 
   /// Asks search and scan source for a sign of life; the search gives it between two searches.
-  void ask() noexcept;
-  /// Whether it has answered all that it was asked.
-  [[nodiscard]] bool has_answered() const noexcept { return answered_.load() == asked_.load(); }
+  /// Returns what to hold against has_answered().  Thread: any.
+  std::uint32_t ask() noexcept;
+  /// Whether the search has answered that one.
+  [[nodiscard]] bool has_answered(std::uint32_t asked) const noexcept {
+    return static_cast<std::int32_t>(answered_.load() - asked) >= 0;
+  }
 
   /// The bus's thread: an order takes the place of all before it.  Cost: no wait.
   void give(const job::Order& order) noexcept;

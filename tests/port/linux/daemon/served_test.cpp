@@ -218,6 +218,21 @@ TEST_F(Served, CancelEndsASearchAtOnce) {
   EXPECT_TRUE(plc.trigger(3).has(job::kValid));
 }
 
+TEST_F(Served, AnswerThatIsLateEndsTheSearchAndTheNextIsSound) {
+  RunningDaemon daemon({"--config", dry_run("answer_by_ms = 1\ndeadline_ms = 1",
+                                            "[[job]]\nnumber = 2\nparts = [\"pad\"]\n")});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  for (std::uint16_t number = 1; number < 9; number = static_cast<std::uint16_t>(number + 2)) {
+    const Plc::Block late = plc.trigger(number);
+    EXPECT_EQ(late[Field::kStatus], static_cast<int>(Answer::kAnswerLate));
+    EXPECT_FALSE(late.has(job::kValid));
+    const Plc::Block sound = plc.trigger(static_cast<std::uint16_t>(number + 1), 0, 1, 2);
+    EXPECT_EQ(sound[Field::kStatus], 0);
+    EXPECT_TRUE(sound.has(job::kValid));
+  }
+}
+
 TEST_F(Served, EveryCommandIsAnswered) {
   RunningDaemon daemon({"--config", dry_run("max_matches = 8")});
   Plc plc(daemon.port());
