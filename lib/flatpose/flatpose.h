@@ -16,8 +16,8 @@
  * Units    mm and degrees. Rotations are row-major 3 x 3 matrices.
  * Frames   `scan` as the sensor gave it. With scan.work_T_scan everything in and out is in `work`.
  *          z of `object` points out of the part's surface.
- * Growth   Every struct begins with its size. Begin with the _INIT of its kind, always: what a
- * later version adds then has its default.
+ * Growth   Every struct that is passed by itself begins with its size. Begin with the _INIT of its
+ * kind, always: what a later version adds then has its default.
  */
 #ifndef FLATPOSE_FLATPOSE_H_
 #define FLATPOSE_FLATPOSE_H_
@@ -45,7 +45,7 @@ typedef enum flatpose_status {
   FLATPOSE_STATUS_BAD_VERSION = 11, /* a file, or a struct, of a newer library */
   FLATPOSE_STATUS_BAD_CHECKSUM = 12,
   FLATPOSE_STATUS_TRUNCATED = 13,
-  FLATPOSE_STATUS_STOPPED = 14
+  FLATPOSE_STATUS_STOPPED = 14 /* inside only: calls report an outcome */
 } flatpose_status;
 
 /* How a search ended. Positive: usable, with a warning. Negative: no pose. */
@@ -204,7 +204,7 @@ typedef struct flatpose_config {
   double min_visible;     /* share of the surface, 0 to 1 */
   double max_tilt_deg;    /* against the work plane, 0 to 68; negative: 45.8 */
   double cell_mm;         /* of the finest height map; 0: the part's own */
-  int64_t deadline_us;    /* after the call; 0: none */
+  int64_t deadline_us;    /* after the call; 0: none. Without host->now_us it never strikes */
   flatpose_region region; /* where the part's origin may lie */
 } flatpose_config;
 #define FLATPOSE_CONFIG_INIT                                                     \
@@ -239,7 +239,7 @@ typedef struct flatpose_match {
   double score;         /* confirmed share of what could be seen, contradictions counted in full */
   double visible;       /* share of the part that the scan could show */
   flatpose_pose pose;   /* scan_T_object, or work_T_object when the scan had work_T_scan */
-  double sigma_mm[3];   /* standard deviation along the frame's axes */
+  double sigma_mm[3];   /* standard deviation along the frame's axes, without teach's own error */
   double sigma_deg[3];  /* about the object's own axes */
   int32_t turn_is_free; /* full symmetry: sigma_deg[2] means nothing */
   double edge_rms_mm;
