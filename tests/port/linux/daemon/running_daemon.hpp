@@ -119,6 +119,10 @@ class Plc {
     EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(bytes.size()));
   }
+  /// As much as is taken before the other side closes.
+  void send_some(const Bytes& bytes) const {
+    (void)!::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
   /// The next byte of the stream; -1: it was closed.
   [[nodiscard]] int byte() const {
     std::uint8_t got = 0;

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <random>
+#include <thread>
 
 #include "flatpose/geometry/robot_convention.hpp"
 #include "flatpose/locate/locator.hpp"
@@ -135,6 +138,7 @@ TEST_F(Served, NumberOfTheSessionBeforeIsRefusedAfterARestart) {
     ASSERT_TRUE(plc.waits_until_ready());
     session = static_cast<std::uint16_t>(plc.block()[Field::kSessionId]);
     EXPECT_EQ(plc.trigger(3, session)[Field::kDoneNumber], 3);
+    EXPECT_TRUE(plc.write({4, session, 1, 1}));  // killed in mid-search
     EXPECT_EQ(daemon.stop(SIGKILL), -1);
   }
   RunningDaemon daemon({"--config", dry_run()});
@@ -231,6 +235,45 @@ TEST_F(Served, AnswerThatIsLateEndsTheSearchAndTheNextIsSound) {
     EXPECT_EQ(sound[Field::kStatus], 0);
     EXPECT_TRUE(sound.has(job::kValid));
   }
+}
+
+// From another address: every function with every length, then bytes that are no frames at all.
+void be_hostile(int port) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 300; ++round) {
+    const Plc bad(port, "127.0.0.3");
+    Bytes stream;
+    for (int i = 0; i < 4; ++i) {
+      Bytes pdu{static_cast<std::uint8_t>(random())};
+      const std::size_t more = random() % 260;
+      for (std::size_t k = 0; k < more; ++k) pdu.push_back(static_cast<std::uint8_t>(random()));
+      const Bytes frame = Plc::frame(static_cast<std::uint16_t>(i), pdu);
+      stream.insert(stream.end(), frame.begin(), frame.end());
+    }
+    if (round % 3 == 0) stream[random() % stream.size()] ^= 0x55;
+    if (round % 2 == 0) stream.resize(random() % stream.size() + 1);
+    bad.send_some(stream);
+  }
+}
+
+TEST_F(Served, EveryNumberIsAnsweredAmongHostileClients) {
+  RunningDaemon daemon({"--config", dry_run()});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  std::atomic<bool> is_over{false};
+  std::jthread hostile([&] {
+    while (!is_over.load()) be_hostile(daemon.port());
+  });
+  for (std::uint16_t number = 1; number <= 12; ++number) {
+    const Plc::Block block = plc.trigger(number);
+    EXPECT_EQ(block[Field::kDoneNumber], number);
+    EXPECT_EQ(block[Field::kScanNumber], number);  // each once
+    EXPECT_TRUE(block.has(job::kValid));
+  }
+  is_over.store(true);
+  hostile.join();
+  EXPECT_TRUE(plc.trigger(13).has(job::kValid));
+  EXPECT_EQ(daemon.stop(SIGTERM), 0) << daemon.log();
 }
 
 TEST_F(Served, EveryCommandIsAnswered) {
