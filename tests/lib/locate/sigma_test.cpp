@@ -117,7 +117,7 @@ TEST_P(Sigma, ErrorsSquaredInItsUnitsAverageNearOne) {
   const bool turn_is_free = GetParam().part->symmetry_fold == 0;
   for (const int k : {2, 3, 4}) {
     EXPECT_GT(squares[k], 0.9 * (1.0 - scatter)) << k;
-    EXPECT_LT(squares[k], 1.3 * (1.0 + scatter)) << k;
+    EXPECT_LT(squares[k], 1.2 * (1.0 + scatter)) << k;
   }
   for (const int k : {0, 1, 5}) {
     if (k == 5 && turn_is_free) continue;
