@@ -218,7 +218,7 @@ typedef struct flatpose_result {
   size_t struct_size;
   int32_t outcome;
   int32_t match_count; /* see flatpose_match_at() */
-  int32_t is_exact;    /* nonzero: all hypotheses and candidates were gone through */
+  int32_t is_exact;    /* nonzero: all of hypothesis_count and all candidates were gone through */
   double bound_gap;    /* by how much of a score what was not gone through could be better */
   int64_t hypothesis_count;
   int64_t evaluated_count;

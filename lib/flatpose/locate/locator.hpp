@@ -77,10 +77,12 @@ struct LocateResult {
   int match_count = 0;
   std::array<Match, kMatchCountMax> matches{};
   Timings timings;
-  std::int64_t hypothesis_count = 0;  ///< Places times angles that the planarity gate left.
+  /// Places times angles that the planarity gate left, of the anchors searched: further ones are
+  /// only while fewer parts than asked for are beyond doubt.
+  std::int64_t hypothesis_count = 0;
   /// Of these, the ones looked at one by one: for the others a bound was enough.
   std::int64_t evaluated_count = 0;
-  /// Whether all hypotheses and all candidates were gone through: no deadline struck.
+  /// Whether all of these and all candidates were gone through: no deadline struck.
   bool is_exact = true;
   /// By how much of a score what was not gone through could be better than the best match.
   double bound_gap = 0.0;
