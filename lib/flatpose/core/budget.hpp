@@ -10,7 +10,7 @@
 
 namespace flatpose {
 
-/// Rows of a scan or a map, of at most 4096 cells, that are gone through once between two looks.
+/// Rows of a scan or a map that are gone through once between two looks.
 inline constexpr int kRowsPerLook = 16;
 /// Blocks of places that are searched at all angles between two looks.
 inline constexpr int kBlocksPerLook = 16;
