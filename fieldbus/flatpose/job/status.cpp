@@ -44,6 +44,9 @@ constexpr AnswerText kTexts[] = {
      "run flatposed --check on the config"},
     {Answer::kPending, "pending", "no result: none was asked for yet, or the command is running",
      "wait until done_number is the command_number"},
+    {Answer::kOutOfTime, "out_of_time",
+     "time ran out before anything was verified: a part may lie there all the same",
+     "give the job more time, or a smaller region; then trigger again"},
 };
 
 }  // namespace

@@ -31,6 +31,7 @@ enum class Answer : std::int16_t {
   kNotSaved = -14,
   kJobsRefused = -15,
   kPending = -16,
+  kOutOfTime = -17,
 };
 
 [[nodiscard]] constexpr Answer answer_of(locate::Outcome outcome) noexcept {

@@ -73,7 +73,7 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   int index = 0;
   for (const int part : job_->config.parts) search_part(part, ++index, order, scan, host);
   if (result_.match_count == 0 && job::may_have_pose(result_.answer))
-    result_.answer = outside_count_ > 0 ? Answer::kOutsideLimits : Answer::kNoMatch;
+    result_.answer = without_match();
   if (!job::may_have_pose(result_.answer)) result_.match_count = 0;
   if (result_.match_count > 0) {
     const auto best = static_cast<std::size_t>(result_.matches[0].part - 1);
@@ -83,6 +83,12 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   result_.cycle_us =
       static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, UINT32_MAX - 1));
   return result_;
+}
+
+// A search that was not ended by itself has seen no place empty.
+Answer JobSearch::without_match() const noexcept {
+  if (result_.answer == Answer::kDeadline) return Answer::kOutOfTime;
+  return outside_count_ > 0 ? Answer::kOutsideLimits : Answer::kNoMatch;
 }
 
 void JobSearch::search_part(int part, int index, const job::Order& order, const HeldScan& scan,

@@ -26,6 +26,7 @@ class JobSearch {
   void search_part(int part, int index, const job::Order& order, const HeldScan& scan,
                    const Host& host) noexcept;
   void add_matches(int index) noexcept;
+  [[nodiscard]] job::Answer without_match() const noexcept;
 
   const JobSet& set_;
   locate::Locator& locator_;
