@@ -47,7 +47,8 @@ modbus::Settings settings_of(const ModbusConfig& config) {
 Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine)
     : engine_(engine),
       modbus_(machine_, executor_, settings_of(config.modbus)),
-      server_(config.modbus.place, config.modbus.bind, config.modbus.port, engine.event()) {
+      server_(config.modbus.place, config.modbus.bind, config.modbus.port, engine.event(),
+              config.modbus.allowed) {
   if (machine_.init(machine_config(config), jobs, clock_.now_us()) != Status::kOk)
     throw std::runtime_error("the job machine refuses its jobs");
 }

@@ -12,6 +12,7 @@
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/result_map/registers.hpp"
 #include "port/linux/files/scan.hpp"
+#include "port/linux/modbus/allow_list.hpp"
 #include "port/linux/realtime/config.hpp"
 
 namespace flatpose::daemon {
@@ -34,6 +35,7 @@ struct ModbusConfig {
   std::string place;  ///< "FILE:LINE" of the port, for messages.
   std::string bind = "0.0.0.0";
   int port = 502;  ///< 0: any that is free.
+  port::AllowList allowed;
   std::uint8_t unit = 1;
   result_map::WireFormat format;
   job::Handshake handshake = job::Handshake::kNumber;

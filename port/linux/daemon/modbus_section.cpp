@@ -5,6 +5,7 @@
 
 #include "port/linux/daemon/config.hpp"
 #include "port/linux/daemon/section.hpp"
+#include "port/linux/files/input_error.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -12,12 +13,24 @@ namespace {
 constexpr Range kPorts{0, 65535};
 constexpr Range kUnits{1, 247};
 constexpr Range kLeases_ms{100, 3'600'000};
+constexpr std::size_t kNetworksMax = 64;
 constexpr Range kInt32s{INT32_MIN, INT32_MAX};
 constexpr double kFloatMost = std::numeric_limits<float>::max();
 
 // In the order of WordOrder and Handshake.
 const std::vector<std::string> kOrders{"ABCD", "CDAB", "BADC", "DCBA"};
 const std::vector<std::string> kHandshakes{"number", "bits"};
+
+void read_allowed(Section& section, port::AllowList& allowed) {
+  for (const std::string& text : section.texts("allow", kNetworksMax)) {
+    const auto network = port::parse_network(text);
+    if (!network)
+      section.fail("allow",
+                   "'allow' has \"" + port::printable(text, 60) + "\", which is no network",
+                   "write \"192.0.2.7\" or \"192.0.2.0/24\", all beyond the network's bits 0");
+    allowed.networks.push_back(*network);
+  }
+}
 
 }  // namespace
 
@@ -27,6 +40,7 @@ void read_modbus(Section section, Config& config) {
   modbus.place = section.place_of("port");
   modbus.bind = section.text("bind").value_or(modbus.bind);
   modbus.port = static_cast<int>(section.whole("port", kPorts).value_or(modbus.port));
+  read_allowed(section, modbus.allowed);
   modbus.unit = static_cast<std::uint8_t>(section.whole("unit", kUnits).value_or(modbus.unit));
   modbus.format.order =
       static_cast<result_map::WordOrder>(section.choice("word_order", kOrders).value_or(0));

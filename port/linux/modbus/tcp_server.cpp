@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace flatpose::port {
 namespace {
@@ -18,10 +19,11 @@ constexpr std::int64_t kUsPerMs = 1000;
 }  // namespace
 
 TcpServer::TcpServer(const std::string& subject, const std::string& address, int port, int wake,
-                     const ClientLimits& limits)
+                     AllowList allowed, const ClientLimits& limits)
     : listener_(listen_on(subject, address, port)),
       epoll_(epoll_create1(EPOLL_CLOEXEC)),
       wake_(wake),
+      allowed_(std::move(allowed)),
       limits_(limits) {
   const bool is_ready = epoll_.is_open() &&
                         watch(EPOLL_CTL_ADD, listener_.socket.get(), EPOLLIN, kListenerSlot) &&
@@ -89,6 +91,7 @@ void TcpServer::let_in(std::int64_t now_us, const Responder& responder) noexcept
     job::Address peer = job::kNobody;
     FileDescriptor socket = accept_from(listener_.socket.get(), peer);
     if (!socket.is_open()) return;
+    if (!allowed_.admits(peer)) continue;
     const int index = choose_seat(now_us, responder);
     if (index >= 0) seat(index, std::move(socket), {peer, ++connection_count_}, now_us);
   }

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "port/linux/modbus/allow_list.hpp"
 #include "port/linux/modbus/client.hpp"
 #include "port/linux/modbus/listener.hpp"
 #include "port/linux/modbus/seats.hpp"
@@ -25,7 +26,7 @@ class TcpServer {
   /// Listens from now on. `wake` is an eventfd, or -1; wait() empties it.
   /// Fails: InputError naming `subject`, std::system_error.
   TcpServer(const std::string& subject, const std::string& address, int port, int wake,
-            const ClientLimits& limits = {});
+            AllowList allowed = {}, const ClientLimits& limits = {});
 
   [[nodiscard]] int port() const noexcept { return listener_.port; }
   /// "127.0.0.1:502"
@@ -52,6 +53,7 @@ class TcpServer {
   Listener listener_;
   FileDescriptor epoll_;
   int wake_ = -1;
+  const AllowList allowed_;
   ClientLimits limits_;
   std::array<std::optional<Client>, kClientCountMax> clients_;
   std::array<bool, kClientCountMax> is_due_{};

@@ -119,7 +119,8 @@ TEST(Config, ThatCannotBeReadSaysSo) {
 TEST(Config, HoldsBusSourceAndJobs) {
   const Config config = parse_config(
       kPath,
-      "[modbus]\nbind = \"127.0.0.1\"\nport = 1502\nunit = 9\nword_order = \"BADC\"\n"
+      "[modbus]\nbind = \"127.0.0.1\"\nport = 1502\nunit = 9\nallow = "
+      "[\"192.0.2.0/24\"]\nword_order = \"BADC\"\n"
       "no_pose_int32 = -1\nhandshake = \"bits\"\nlease_ms = 700\n"
       "[source]\nreplay = \"s.pcd\"\nup = \"+z\"\n"
       "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n[[part]]\nname = \"b\"\nfile = \"/b.fpt\"\n"
@@ -131,6 +132,8 @@ TEST(Config, HoldsBusSourceAndJobs) {
   EXPECT_EQ(config.modbus.bind, "127.0.0.1");
   EXPECT_EQ(config.modbus.port, 1502);
   EXPECT_EQ(config.modbus.unit, 9);
+  EXPECT_TRUE(config.modbus.allowed.admits(0xc0000263));
+  EXPECT_FALSE(config.modbus.allowed.admits(0xc0000363));
   EXPECT_EQ(config.modbus.format.order, result_map::WordOrder::kBadc);
   EXPECT_EQ(config.modbus.format.none_int32, 0xffffffffU);
   EXPECT_EQ(config.modbus.handshake, job::Handshake::kBits);
@@ -175,6 +178,8 @@ TEST(Config, RefusesJobsThatCannotBeRun) {
   expect_refused(job + "max_matches = 33\n", {"dir/f.toml:6: "});
   expect_refused("[modbus]\nword_order = \"abcd\"\n", {"dir/f.toml:2: ", "ABCD, CDAB"});
   expect_refused("[modbus]\nport = 65536\n", {"dir/f.toml:2: "});
+  expect_refused("[modbus]\nallow = [\"192.0.2.1/24\"]\n",
+                 {"dir/f.toml:2: ", "192.0.2.1/24", "192.0.2.0/24"});
   expect_refused("[source]\nup = \"z\"\n", {"dir/f.toml:2: ", "+z, -z"});
 }
 

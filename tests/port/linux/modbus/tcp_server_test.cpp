@@ -23,12 +23,15 @@ class Echo final : public Responder {
   std::size_t respond(const job::Master& master, const modbus::Adu& adu,
                       std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept override {
     masters.push_back(master);
-    return modbus::compose(adu.transaction, adu.unit, adu.pdu, response);
+    Bytes pdu(adu.pdu.begin(), adu.pdu.end());
+    pdu.resize(std::max(pdu.size(), least_pdu_bytes), 7);
+    return modbus::compose(adu.transaction, adu.unit, pdu, response);
   }
   job::Address owner() const noexcept override { return owner_address; }
 
   std::vector<job::Master> masters;
   job::Address owner_address = job::kNobody;
+  std::size_t least_pdu_bytes = 0;  ///< Of a response.
 };
 
 class Peer {
@@ -203,6 +206,32 @@ TEST_F(TcpServerTest, ClientThatReadsLateGetsAllAnswers) {
   EXPECT_EQ(wrong, 0U);
 }
 
+// All requests are read, and what is left is a response that found no room.
+TEST_F(TcpServerTest, ResponseThatFoundNoRoomIsSentThoughNothingMoreIsAsked) {
+  echo.least_pdu_bytes = modbus::kPduBytesMax;
+  Peer late(server.port(), 2048);
+  const Bytes request = frame(1, 1);
+  std::size_t asked = 0;
+  for (int i = 0; i < 100'000 && server.deadline_us() == Client::kNever_us; ++i) {
+    ASSERT_EQ(late.send(request), request.size());
+    ++asked;
+    while (echo.masters.size() < asked) turn(1);
+  }
+  ASSERT_NE(server.deadline_us(), Client::kNever_us);
+  const std::size_t whole = asked * modbus::kAduBytesMax;
+  std::size_t got = 0;
+  for (int i = 0; i < 1'000'000 && got < whole; ++i) {
+    server.wait(0);
+    server.serve(now_us, echo);
+    got += late.received().size();
+  }
+  EXPECT_EQ(got, whole);
+  EXPECT_EQ(server.deadline_us(), Client::kNever_us);
+  echo.least_pdu_bytes = 0;
+  late.send(request);  // and it is listened to again
+  EXPECT_EQ(answer(late, request.size()), request);
+}
+
 TEST_F(TcpServerTest, SeventeenthTakesTheSeatOfOneThatNeverSpoke) {
   const Bytes whole = frame(1);
   std::vector<Peer> peers;
@@ -263,6 +292,46 @@ TEST_F(TcpServerTest, ClosingAtEveryByteLeavesNothingBehind) {
     peer.close();
     let_in(0);
   }
+}
+
+TEST(TcpServerAllow, ClosesWhoIsNotOnTheListAndServesWhoIs) {
+  Echo echo;
+  const Bytes whole = frame(1);
+  for (const char* const text :
+       {"127.0.0.1", "127.0.0.0/8", "0.0.0.0/0", "127.0.0.2", "10.0.0.0/8"}) {
+    TcpServer server("test", "127.0.0.1", 0, -1, {{*parse_network(text)}});
+    const bool is_listed = parse_network(text)->contains(0x7f000001);
+    Peer peer(server.port());
+    peer.send(whole);
+    Bytes got;
+    for (int i = 0; i < 1000 && got.empty() && !peer.is_closed(); ++i) {
+      server.wait(20'000);
+      server.serve(1, echo);
+      got = peer.received();
+    }
+    EXPECT_EQ(got, is_listed ? whole : Bytes()) << text;
+    EXPECT_EQ(server.client_count(), is_listed ? 1 : 0) << text;
+  }
+}
+
+TEST(AllowList, HoldsNetworksAndSingleAddresses) {
+  const auto admits = [](const char* text, std::uint32_t address) {
+    return AllowList{{*parse_network("192.0.2.7"), *parse_network(text)}}.admits(address);
+  };
+  EXPECT_TRUE(admits("10.0.0.0/8", 0xc0000207));
+  EXPECT_FALSE(admits("10.0.0.0/8", 0xc0000208));
+  EXPECT_TRUE(admits("10.0.0.0/8", 0x0affffff));
+  EXPECT_FALSE(admits("10.0.0.0/8", 0x0b000000));
+  EXPECT_TRUE(admits("198.51.100.0/31", 0xc6336401));
+  EXPECT_FALSE(admits("198.51.100.0/31", 0xc6336402));
+  EXPECT_TRUE(AllowList{}.admits(0x01020304));
+}
+
+TEST(AllowList, RefusesWhatIsNoNetwork) {
+  for (const char* const text :
+       {"", "nonsense", "192.0.2.0/", "192.0.2.0/33", "192.0.2.0/-1", "192.0.2.0/ 8",
+        "192.0.2.0/24x", "192.0.2.1/24", "1.2.3", "::1", "/8", "192.0.2.0/24/8"})
+    EXPECT_FALSE(parse_network(text)) << text;
 }
 
 TEST(Listener, SaysWhatCannotBeListenedOn) {
