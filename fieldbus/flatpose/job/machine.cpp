@@ -117,6 +117,10 @@ void Machine::take_event(const SearchEvent& event) noexcept {
 }
 
 void Machine::take_life(const SearchEvent& event) noexcept {
+  if (event.kind == SearchEvent::Kind::kSourceGone) {
+    source_was_alive_ = source_has_beaten_ = false;
+    return;
+  }
   if (event.kind == SearchEvent::Kind::kSourceAlive) {
     source_is_simulated_ = event.result.is_simulated;
   }

@@ -60,6 +60,7 @@ struct SearchEvent {
   enum class Kind : std::uint8_t {
     kSearchAlive,  ///< The search thread went round its loop, or through a stage.
     kSourceAlive,  ///< The scan source showed life; `result.is_simulated` says of what kind it is.
+    kSourceGone,   ///< The scan source is known to be dead: READY drops before its silence tells.
     kScanned,      ///< The order's scan is acquired: robot or belt may move.
     kFinished,     ///< The order is done: `result` says how.
   };

@@ -10,7 +10,7 @@ namespace flatpose::daemon {
 namespace {
 
 constexpr std::int64_t kAskEvery_us = 500'000;
-/// A search that works all its time on a slow machine is alive.
+/// Ten questions: far more than a slow machine takes between two looks of a search.
 constexpr std::int64_t kLivenessLimit_us = 5'000'000;
 /// More than both mailboxes hold.
 constexpr int kEventsPerTurn = 16;

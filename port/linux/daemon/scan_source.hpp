@@ -1,21 +1,23 @@
 #pragma once
-// Scans from files, loaded on a thread of their own into two buffers: while one is searched, and
-// kept for a search in the last scan, the other already holds the next. A replayed scan counts as
-// acquired when a trigger takes it, and as simulated: it is not what lies before the sensor.
+// Where scans come from. A source has a thread of its own; the searching thread asks it for one
+// scan a command and sleeps at its own bell until there is one, or is not.
+//
+//   search thread:  request(order) ...  take() until it gives a scan  | abandon()
+//   bus thread:     ask(), hear(event)
+//
+// Only a scan whose acquisition began after the command was accepted is given.
 
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <ctime>
+#include <memory>
 #include <span>
 #include <string>
-#include <thread>
 
 #include "flatpose/geometry/range_image.hpp"
 #include "flatpose/job/order.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/log.hpp"
 #include "port/linux/daemon/mailbox.hpp"
-#include "port/linux/daemon/replay_folder.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
 
 namespace flatpose::daemon {
@@ -24,87 +26,71 @@ namespace flatpose::daemon {
 struct HeldScan {
   RangeImageView view;
   port::Up up = port::Up::kMinusZ;
-  std::string path;
+  std::string name;          ///< Of its file, or of the driver it comes from.
   std::string failure;       ///< A line for the log; empty: the scan is there.
+  bool is_simulated = true;  ///< Not known to be what lies before the sensor.
   bool is_repeated = false;  ///< Byte for byte as the one before.
   std::uint32_t number = 0;
-  std::int64_t acquired_us = 0;  ///< When it was taken; 0: not yet.
-  std::uint32_t sensor_us = 0;   ///< What the taker had to wait for.
+  std::int64_t acquired_us = 0;  ///< End of acquisition, or a moment before it; 0: not yet.
+  std::uint32_t sensor_us = 0;   ///< What the sensor took, or what was waited for it.
 };
 
-/// Which file it was when it was read: another one under the name is read anew.
-struct FileState {
-  std::uint64_t device = 0;
-  std::uint64_t inode = 0;
-  std::int64_t bytes = 0;
-  timespec changed{};
-
-  [[nodiscard]] static FileState of(const std::string& path) noexcept;
-  [[nodiscard]] bool operator==(const FileState& other) const noexcept;
+/// What a scan is wanted for. Times on CLOCK_MONOTONIC.
+struct ScanOrder {
+  std::uint32_t ticket = 0;
+  std::uint16_t number = 0;  ///< The master's.
+  std::uint16_t job = 0;
+  std::int64_t accepted_us = 0;
+  std::int64_t answer_by_us = 0;
 };
+
+/// What a source says of itself.
+struct SourceLife {
+  bool is_alive = false;
+  bool is_simulated = false;
+};
+
+using ScanBuffers = std::array<std::span<float>, kScanBufferCount>;
 
 class ScanSource {
  public:
-  using Buffers = std::array<std::span<float>, kScanBufferCount>;
-  using SourceEvents = Queue<job::SearchEvent, 4>;
-
-  /// `taker` is rung when a scan is there, `wake` (an eventfd) written when the source has spoken.
-  /// Refers to bell and buffers, which must outlive it.
-  ScanSource(const Config& config, const Buffers& buffers, Doorbell& taker, int wake);
-  ~ScanSource();
+  /// `wake`: an eventfd that is written when the source has spoken.
+  explicit ScanSource(int wake) noexcept : wake_(wake) {}
+  virtual ~ScanSource() = default;
   ScanSource(const ScanSource&) = delete;
   ScanSource& operator=(const ScanSource&) = delete;
 
-  void start();
-  /// Any thread: asks for a sign of life.
-  void ask() noexcept {
-    is_asked_.store(true);
-    bell_.ring();
-  }
-  /// The bus's thread: what the source says of itself.
-  [[nodiscard]] SourceEvents& events() noexcept { return events_; }
+  /// Once.  Fails: std::system_error.
+  virtual void start() = 0;
+  /// Asks for a sign of life.  Thread: any.
+  virtual void ask() noexcept = 0;
 
-  /// The searching thread: the next scan, or null as long as there is none; the last one is let go
-  /// then. To be called again when the taker's bell has rung.
-  [[nodiscard]] const HeldScan* take(std::int64_t now_us) noexcept;
-  /// The searching thread: how long the scan just taken was waited for.
-  void waited(std::int64_t time_us) noexcept;
-  /// The scan taken last; null: none yet, or it could not be read.
-  [[nodiscard]] const HeldScan* last() const noexcept;
+  /// The searching thread: a command wants a scan; what was wanted before is wanted no more.
+  virtual void request(const ScanOrder& order) noexcept = 0;
+  /// The searching thread: the scan wanted, or why it failed; null as long as there is neither. To
+  /// be called again when the taker's bell has rung. The scan taken before is let go by it.
+  [[nodiscard]] virtual const HeldScan* take(std::int64_t now_us) noexcept = 0;
+  /// The searching thread: nobody wants it any more.
+  virtual void abandon() noexcept = 0;
+  /// The scan taken last; null: none yet, or it failed.
+  [[nodiscard]] virtual const HeldScan* last() const noexcept = 0;
+
+  /// The bus's thread: what the source has to say, the newest alone.
+  [[nodiscard]] bool hear(job::SearchEvent& event) noexcept;
+
+ protected:
+  /// The source's thread.
+  void tell(const SourceLife& life) noexcept;
 
  private:
-  struct Slot {
-    std::atomic<bool> is_loaded{false};
-    std::uint64_t turn = 0;  ///< They are taken in the order in which they were loaded.
-    HeldScan scan;
-    FileState state;
-    std::size_t value_count = 0;
-  };
-
-  void work() noexcept;
-  void say_alive() noexcept;
-  void load(int index) noexcept;
-  void read_into(int index);
-  [[nodiscard]] int next_loaded() const noexcept;
-  [[nodiscard]] bool is_stale(const Slot& slot) const noexcept;
-
-  const SourceConfig config_;
-  const port::ReadLimits limits_;
-  const locate::Limits sides_;
-  ReplayFolder replay_;
-  Buffers buffers_;
-  Doorbell& taker_;
   const int wake_;
-  std::array<Slot, kScanBufferCount> slots_;
-  Doorbell bell_;
-  SourceEvents events_;
-  std::atomic<bool> is_asked_{false};
-  std::atomic<bool> is_over_{false};
-  std::uint64_t turn_ = 0;  ///< The loader's.
-  int held_ = -1;           ///< The taker's, and the next two.
-  std::uint32_t taken_count_ = 0;
-  int rereads_ = 0;
-  std::thread thread_;
+  Latest<SourceLife> life_;
 };
+
+/// The one that the config names; null: none. `taker` is rung when a scan is there. Refers to
+/// buffers, taker and log, which must outlive it.  Fails: port::InputError, std::system_error.
+[[nodiscard]] std::unique_ptr<ScanSource> make_scan_source(const Config& config,
+                                                           const ScanBuffers& buffers,
+                                                           Doorbell& taker, int wake, Log& log);
 
 }  // namespace flatpose::daemon

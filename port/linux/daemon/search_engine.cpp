@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "port/linux/realtime/thread_setup.hpp"
 
@@ -32,7 +33,7 @@ job::ScanResult result_of(const HeldScan* scan, Answer answer) noexcept {
   result.acquired_us = scan->acquired_us;
   result.sensor_us = scan->sensor_us;
   result.is_repeated = scan->is_repeated;
-  result.is_simulated = true;  // a replay is not what lies before the sensor
+  result.is_simulated = scan->is_simulated;
   return result;
 }
 
@@ -50,9 +51,8 @@ SearchEngine::SearchEngine(const Config& config, const JobSet& jobs, Log& log)
   const Status status = locator_.init(config.search.limits, arena_.span());
   if (status != Status::kOk)
     throw std::runtime_error(std::string("the limits of [search]: ") + to_string(status));
-  if (config.source.replay.empty()) return;
-  const ScanSource::Buffers buffers{floats(buffers_[0]), floats(buffers_[1])};
-  source_ = std::make_unique<ScanSource>(config, buffers, bell_, event_.get());
+  source_ = make_scan_source(config, {floats(buffers_[0]), floats(buffers_[1])}, bell_,
+                             event_.get(), log);
 }
 
 void SearchEngine::start() {
@@ -90,7 +90,12 @@ void SearchEngine::give(const job::Order& order) noexcept {
 }
 
 bool SearchEngine::take(job::SearchEvent& event) noexcept {
-  return (source_ && source_->events().take(event)) || events_.take(event);
+  if ((source_ && source_->hear(event)) || events_.take(event)) return true;
+  const std::uint32_t answered = answered_.load();
+  if (std::exchange(heard_, answered) == answered) return false;
+  event = {};
+  event.kind = Kind::kSearchAlive;
+  return true;
 }
 
 // --- the search thread
@@ -118,9 +123,12 @@ void SearchEngine::work() noexcept {
   }
 }
 
+// From the search thread and from its workers: only who answers first writes anything.
 void SearchEngine::answer_asker() noexcept {
-  const std::uint32_t asked = asked_.load();
-  if (answered_.exchange(asked) != asked) say(Kind::kSearchAlive, 0);
+  const std::uint32_t asked = asked_.load(std::memory_order_relaxed);
+  if (answered_.load(std::memory_order_relaxed) == asked || answered_.exchange(asked) == asked)
+    return;
+  wake_bus();
 }
 
 void SearchEngine::execute(const job::Order& order) noexcept {
@@ -163,21 +171,24 @@ void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
 const HeldScan* SearchEngine::next_scan(const job::Order& order, const Cancel& replaced) noexcept {
   if (!source_) return nullptr;
   const HeldScan* scan = nullptr;
-  const std::int64_t start_us = clock_.now_us();
-  while (!replaced.is_asked_for()) {
+  source_->request({order.ticket, order.number, order.job, order.accepted_us, order.answer_by_us});
+  while (true) {
     const std::uint32_t seen = bell_.seen();
-    answer_asker();
+    if (replaced.is_asked_for()) break;
     scan = source_->take(clock_.now_us());
     if (scan != nullptr) break;
     bell_.wait(seen);  // the loader rings, and so do a stop and an ask
   }
-  if (scan == nullptr) return nullptr;
+  if (scan == nullptr) {
+    source_->abandon();
+    return nullptr;
+  }
   if (!scan->failure.empty()) {
     note("command " + std::to_string(order.number) + ": " + scan->failure);
     return nullptr;
   }
-  source_->waited(clock_.now_us() - start_us);
-  say(Kind::kScanned, order.ticket);
+  said_ = {Kind::kScanned, order.ticket, {}};
+  say_for_certain();
   return scan;
 }
 
@@ -190,18 +201,14 @@ void SearchEngine::finish(const job::Order& order, const job::ScanResult& result
   say_for_certain();
 }
 
-// A sign of life may be lost, the next one comes; what a master waits for may not.
-void SearchEngine::say(Kind kind, std::uint32_t ticket) noexcept {
-  said_ = {kind, ticket, {}};
-  said_.result.is_simulated = true;
-  if (kind != Kind::kSearchAlive) return say_for_certain();
-  const std::uint64_t once = 1;
-  if (events_.put(said_)) (void)!::write(event_.get(), &once, sizeof once);
-}
-
+// What a master waits for is not lost.
 void SearchEngine::say_for_certain() noexcept {
   constexpr std::chrono::milliseconds kPause(1);
   while (!events_.put(said_) && !is_over_.load()) std::this_thread::sleep_for(kPause);
+  wake_bus();
+}
+
+void SearchEngine::wake_bus() const noexcept {
   const std::uint64_t once = 1;
   (void)!::write(event_.get(), &once, sizeof once);
 }

@@ -49,7 +49,8 @@ class SearchEngine {
   /// Of all threads.
   [[nodiscard]] const port::Steps& steps() const noexcept { return steps_; }
 
-  /// Asks search and scan source for a sign of life; the search gives it between two searches.
+  /// Asks search and scan source for a sign of life. The search gives it when it waits, and within
+  /// a search whenever it looks whether it is still wanted: a search that gets nowhere gives none.
   /// Returns what to hold against has_answered().  Thread: any.
   std::uint32_t ask() noexcept;
   /// Whether the search has answered that one.
@@ -68,15 +69,16 @@ class SearchEngine {
   /// Asks whether the order that a search is of is in force no more.
   class Replaced final : public Cancel {
    public:
-    Replaced(const SearchEngine& engine, std::uint32_t ticket) noexcept
+    Replaced(SearchEngine& engine, std::uint32_t ticket) noexcept
         : engine_(engine), ticket_(ticket) {}
     [[nodiscard]] bool is_asked_for() const noexcept override {
+      engine_.answer_asker();
       return engine_.in_force_.load(std::memory_order_relaxed) != ticket_ ||
              engine_.is_over_.load(std::memory_order_relaxed);
     }
 
    private:
-    const SearchEngine& engine_;
+    SearchEngine& engine_;
     std::uint32_t ticket_;
   };
 
@@ -87,9 +89,9 @@ class SearchEngine {
   [[nodiscard]] const HeldScan* next_scan(const job::Order& order, const Cancel& replaced) noexcept;
   void finish(const job::Order& order, const job::ScanResult& result) noexcept;
   void finish(const job::Order& order, job::Answer answer) noexcept;
-  void say(job::SearchEvent::Kind kind, std::uint32_t ticket) noexcept;
   void say_for_certain() noexcept;
   void answer_asker() noexcept;
+  void wake_bus() const noexcept;
   void note(const std::string& text) noexcept;
 
   const Config config_;
@@ -113,6 +115,7 @@ class SearchEngine {
   std::atomic<std::uint32_t> in_force_{0};  ///< The ticket.
   std::atomic<std::uint32_t> asked_{0};
   std::atomic<std::uint32_t> answered_{0};
+  std::uint32_t heard_ = 0;  ///< The bus's: which answer was the last.
   std::thread thread_;
 };
 

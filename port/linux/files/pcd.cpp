@@ -55,15 +55,18 @@ Scan read_pcd(const std::string& path, std::span<const std::byte> bytes, const R
   scan.width_px = header.width_px;
   scan.height_px = header.height_px;
   scan.viewpoint_mm = header.viewpoint_mm;
+  scan.is_simulated = header.is_simulated;
   check_coordinates(path, scan);
   decide_up(scan, header.viewpoint_mm.z);
   return scan;
 }
 
-std::vector<std::byte> pcd_bytes(const RangeImageView& scan, const Vec3& viewpoint_mm) {
+std::vector<std::byte> pcd_bytes(const RangeImageView& scan, const Vec3& viewpoint_mm,
+                                 bool is_simulated) {
   const std::string header =
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\n"
-      "TYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+      "# .PCD v0.7 - Point Cloud Data file format\n" +
+      (is_simulated ? std::string(kPcdSimulatedLine) + "\n" : std::string()) +
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
       std::to_string(scan.width_px) + "\nHEIGHT " + std::to_string(scan.height_px) +
       "\nVIEWPOINT " + shortest(viewpoint_mm.x) + " " + shortest(viewpoint_mm.y) + " " +
       shortest(viewpoint_mm.z) + " 1 0 0 0\nPOINTS " + std::to_string(scan.size()) +
@@ -83,8 +86,9 @@ std::vector<std::byte> pcd_bytes(const RangeImageView& scan, const Vec3& viewpoi
   return bytes;
 }
 
-void write_pcd(const std::string& path, const RangeImageView& scan, const Vec3& viewpoint_mm) {
-  write_file_atomically(path, pcd_bytes(scan, viewpoint_mm));
+void write_pcd(const std::string& path, const RangeImageView& scan, const Vec3& viewpoint_mm,
+               bool is_simulated) {
+  write_file_atomically(path, pcd_bytes(scan, viewpoint_mm, is_simulated));
 }
 
 }  // namespace flatpose::port

@@ -3,7 +3,8 @@
 // Read are the fields x, y, z (F 4, one value each); others of any type, size and count are
 // skipped. DATA is ascii, binary (points one after the other) or binary_compressed (all x, then all
 // y, ..., packed by LZF). NaN is a missing point, infinity an error. VIEWPOINT's position says
-// which side is up; its rotation is not applied, as PCL does not apply it either. Limits: the lines
+// which side is up; its rotation is not applied, as PCL does not apply it either. The comment
+// kPcdSimulatedLine says that no sensor took the scan. Limits: the lines
 // of the header (pcd_header.hpp) and ReadLimits.
 
 #include <cstddef>
@@ -24,10 +25,11 @@ namespace flatpose::port {
 [[nodiscard]] Scan read_pcd(const std::string& path, std::span<const std::byte> bytes,
                             const ReadLimits& limits = {});
 
-/// The bytes of a binary PCD of x, y, z.
-[[nodiscard]] std::vector<std::byte> pcd_bytes(const RangeImageView& scan,
-                                               const Vec3& viewpoint_mm);
+/// The bytes of a binary PCD of x, y, z; one that is simulated says so in a comment.
+[[nodiscard]] std::vector<std::byte> pcd_bytes(const RangeImageView& scan, const Vec3& viewpoint_mm,
+                                               bool is_simulated = false);
 /// Writes a binary PCD of x, y, z.  Fails: InputError; nothing is left then.
-void write_pcd(const std::string& path, const RangeImageView& scan, const Vec3& viewpoint_mm);
+void write_pcd(const std::string& path, const RangeImageView& scan, const Vec3& viewpoint_mm,
+               bool is_simulated = false);
 
 }  // namespace flatpose::port

@@ -27,6 +27,7 @@ class HeaderReader {
     PcdHeader header;
     header.data_offset_bytes = read_lines();
     header.line_count = line_count_;
+    header.is_simulated = is_simulated_;
     check_version();
     header.data = data_kind();
     read_fields(header);
@@ -59,11 +60,17 @@ class HeaderReader {
           rest.size() > kPcdLineBytesMax)
         fail(line_count_, "longer than " + std::to_string(kPcdLineBytesMax) + " bytes", kSaveAgain);
       std::string_view line = take_line(rest);
+      is_simulated_ = is_simulated_ || is_simulated_line(line);
       const std::string_view keyword = take_word(line);
       if (keyword.empty() || keyword[0] == '#') continue;
       store(keyword, line);
       if (keyword == "DATA") return text_.size() - rest.size();
     }
+  }
+
+  static bool is_simulated_line(std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line == kPcdSimulatedLine;
   }
 
   void store(std::string_view keyword, std::string_view values) {
@@ -246,6 +253,7 @@ class HeaderReader {
   std::string_view text_;
   std::array<Entry, kKeywords.size()> entries_{};
   std::size_t line_count_ = 0;
+  bool is_simulated_ = false;
 };
 
 }  // namespace

@@ -7,12 +7,16 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flatpose/geometry/vec3.hpp"
 #include "port/linux/files/scan.hpp"
 
 namespace flatpose::port {
+
+/// A comment by which a PCD says that no sensor took it.
+inline constexpr std::string_view kPcdSimulatedLine = "# flatpose: simulated";
 
 inline constexpr std::size_t kPcdLineBytesMax = 4096;
 inline constexpr std::size_t kPcdLinesMax = 200;
@@ -26,6 +30,7 @@ struct PcdHeader {
   int width_px = 0;
   int height_px = 0;
   Vec3 viewpoint_mm;  // where the sensor stands
+  bool is_simulated = false;
   PcdData data = PcdData::kAscii;
   std::size_t data_offset_bytes = 0;  // where the lines end
   std::size_t line_count = 0;

@@ -42,7 +42,8 @@ struct Scan {
   int width_px = 0;
   int height_px = 0;
   Up up = Up::kMinusZ;
-  std::string up_reason;  ///< "viewpoint", "depth image", "height map", "option" or "default".
+  std::string up_reason;      ///< "viewpoint", "depth image", "height map", "option" or "default".
+  bool is_simulated = false;  ///< The file says that no sensor took it.
   std::optional<Vec3> viewpoint_mm;  ///< Where the sensor stands, when the file says it.
 
   /// The scan as the library takes it; valid while the scan lives and its vector is not changed.

@@ -128,6 +128,7 @@ std::string scan_json(const LoadedScan& loaded, const rectify::Survey& survey, c
   }
   json["up"] = port::to_string(loaded.scan.up);
   json["up_reason"] = loaded.scan.up_reason;
+  json["simulated"] = loaded.scan.is_simulated;
   return line_of(json);
 }
 
@@ -139,10 +140,10 @@ void tell_scan(const Options& options, Report& report) {
     report.text = scan_json(loaded, survey, box);
     return;
   }
-  report.text =
-      formatted("%s: scan of %d x %d points, %.1f %% missing, up %s by %s\n", options.path.c_str(),
-                loaded.scan.width_px, loaded.scan.height_px, 100.0 * survey.missing_share,
-                port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str());
+  report.text = formatted("%s: %sscan of %d x %d points, %.1f %% missing, up %s by %s\n",
+                          options.path.c_str(), loaded.scan.is_simulated ? "simulated " : "",
+                          loaded.scan.width_px, loaded.scan.height_px, 100.0 * survey.missing_share,
+                          port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str());
   if (survey.valid_count == 0) {
     report.text += "  every point is missing\n";
     return;

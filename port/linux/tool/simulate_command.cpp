@@ -69,7 +69,7 @@ ExitCode run(const Options& options, Report& report) {
   check_outputs({}, std::array{options.scan_path, options.truth_path});
   const sim::SimulatedScan scan = simulate(options);
   FirstOutput output(options.scan_path);
-  port::write_pcd(options.scan_path, scan.view(), scan.viewpoint_mm);
+  port::write_pcd(options.scan_path, scan.view(), scan.viewpoint_mm, true);
   if (!options.truth_path.empty())
     port::write_file_atomically(options.truth_path, truth_text(scan));
   output.keep();

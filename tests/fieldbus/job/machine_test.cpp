@@ -356,6 +356,26 @@ TEST(JobMachine, TheHeartbeatNeedsBothToLive) {
   EXPECT_TRUE(desk.has(kBusy));
 }
 
+TEST(JobMachine, ASourceThatIsGoneIsNotWaitedForAndEndsNoCommand) {
+  ReadyDesk desk;
+  const std::uint16_t start = desk.see().heartbeat;
+  desk.tell(SearchEvent::Kind::kSourceGone);
+  EXPECT_FALSE(desk.has(kReady));
+  desk.tell(SearchEvent::Kind::kSearchAlive);
+  EXPECT_FALSE(desk.has(kReady));
+  EXPECT_EQ(desk.see().heartbeat, start);
+  desk.write(1);
+  EXPECT_EQ(desk.see().refused_status, Refusal::kNotReady);
+  desk.tell(SearchEvent::Kind::kSourceAlive);
+  EXPECT_TRUE(desk.has(kReady));
+  desk.write(2);
+  desk.tell(SearchEvent::Kind::kSourceGone);
+  EXPECT_TRUE(desk.has(kBusy));  // its scan may be taken already: the search says how it ends
+  desk.finish(desk.found());
+  EXPECT_TRUE(desk.has(kValid));
+  EXPECT_FALSE(desk.has(kReady));
+}
+
 TEST(JobMachine, RotationsStayNearTheJobsReference) {
   ReadyDesk desk;
   JobTable jobs = two_jobs();

@@ -105,6 +105,7 @@ const std::vector<Step> kInputs{
      [](Desk& desk) {
        desk.tell(SearchEvent::Kind::kFinished, desk.order.ticket - 1, desk.found());
      }},
+    {"source gone", [](Desk& desk) { desk.tell(SearchEvent::Kind::kSourceGone); }},
     {"jobs",
      [](Desk& desk) {
        const JobTable none;

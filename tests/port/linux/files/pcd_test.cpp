@@ -124,6 +124,20 @@ TEST(Pcd, WhatIsWrittenReadsBackBitByBit) {
   EXPECT_EQ(pcd_bytes(back.view(), viewpoint_mm), pcd_bytes(scan.view(), viewpoint_mm));
 }
 
+TEST(Pcd, SaysOfASimulatedScanThatItIsOne) {
+  const TemporaryFolder folder;
+  const Scan scan = scan_of(with_data(mixed_lines(), "binary", mixed_points(small_xyz())));
+  EXPECT_FALSE(scan.is_simulated);
+  for (const bool is_simulated : {false, true}) {
+    write_pcd(folder.path("o.pcd"), scan.view(), {}, is_simulated);
+    const Scan back = read_scan(folder.path("o.pcd"));
+    EXPECT_EQ(back.is_simulated, is_simulated);
+    expect_small(back);
+  }
+  const std::string foreign = "# flatpose: simulated by nobody\n";
+  EXPECT_FALSE(scan_of(foreign + with_data({}, "ascii", small_ascii())).is_simulated);
+}
+
 TEST(Pcd, WritesFromPlanesWithStrides) {
   const std::vector<float> x{1, 2, 9, 3, 4, 9}, y{5, 6, 9, 7, 8, 9}, z{10, 11, 9, 12, 13, 9};
   const RangeImageView planes{x.data(), y.data(), z.data(), 2, 2, 4, 12};

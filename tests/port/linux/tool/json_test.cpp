@@ -106,6 +106,7 @@ TEST_F(Json, HasATextInWhichTheReachIsNoRadius) {
 TEST_F(Json, OfInfoTellsScansAndWorkFiles) {
   const json scan = json::parse(run({"info", path("a.pcd"), "--json"}).out);
   EXPECT_EQ(scan.at("kind"), "scan");
+  EXPECT_EQ(scan.at("simulated"), true);
   EXPECT_EQ(scan.at("width_px"), 200);
   EXPECT_EQ(scan.at("height_px"), 160);
   expect_numbers(scan.at("min_mm"), 3);
