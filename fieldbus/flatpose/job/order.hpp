@@ -35,8 +35,10 @@ struct FoundMatch {
   std::uint16_t part = 0;
   double score = 0.0;
   double visible = 0.0;
-  Vec3 sigma_mm;
-  Vec3 sigma_rad;
+  Vec3 sigma_mm;   ///< Of the reported origin, along the frame's axes.
+  Vec3 sigma_rad;  ///< Of the turn about the reported pose's own axes; NaN about a free one.
+  std::uint16_t tool = 0;  ///< That the pose is for; 0: the pose is the object's own.
+  std::uint16_t pick = 0;  ///< Which of the part's picks, from 1; 0: none of them.
 };
 
 struct ScanResult {

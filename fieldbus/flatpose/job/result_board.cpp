@@ -76,7 +76,9 @@ ShownMatch ResultBoard::shown(int index) const noexcept {
           found.score,
           found.visible,
           found.sigma_mm,
-          found.sigma_rad};
+          found.sigma_rad,
+          found.tool,
+          found.pick};
 }
 
 bool ResultBoard::is_expired(std::int64_t now_us) const noexcept {

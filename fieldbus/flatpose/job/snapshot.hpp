@@ -37,6 +37,8 @@ struct ShownMatch {
   double visible = 0.0;
   Vec3 sigma_mm;
   Vec3 sigma_rad;
+  std::uint16_t tool = 0;
+  std::uint16_t pick = 0;
 };
 
 struct Snapshot {

@@ -65,6 +65,8 @@ enum class Field : std::uint8_t {
   kMatchNumber,
   kMatchIndex,
   kPart,
+  kTool,
+  kPick,
   kScore,
   kVisible,
   kPositionX,

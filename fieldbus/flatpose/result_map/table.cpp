@@ -162,6 +162,12 @@ constexpr Entry kSingle[] = {
     {"done_number_tail", Table::kInput, 192, Type::kUint16, Field::kDoneNumber, 1, "", false,
      ValueSet::kNone, 0x2010, 62, 0,
      "the same as done_number; if not, the block was read in pieces that do not fit"},
+    {"tool", Table::kInput, 193, Type::kUint16, Field::kTool, 1, "", true, ValueSet::kNone, 0x2010,
+     63, 0, "which tool the pose is for; 0: the pose is the part's own, no pick"},
+    {"pick", Table::kInput, 194, Type::kUint16, Field::kPick, 1, "", true, ValueSet::kNone, 0x2010,
+     64, 0, "which of the part's picks, from 1; 0: none of them"},
+    {"done_number_end", Table::kInput, 195, Type::kUint16, Field::kDoneNumber, 1, "", false,
+     ValueSet::kNone, 0x2010, 65, 0, "once more, where the block ends since map version 2"},
 };
 
 // A further match; the address counts from the start of its block.
@@ -194,23 +200,40 @@ constexpr Entry kFurther[] = {
      ValueSet::kNone, 0x2020, 13, 1, "the same as number"},
 };
 
+// How a further match is to be picked; the blocks of these came later and follow all others.
+constexpr Entry kFurtherPick[] = {
+    {"tool_number", Table::kInput, 0, Type::kUint16, Field::kMatchNumber, 1, "", false,
+     ValueSet::kNone, 0x2020, 14, 1, "the command that these are of; 0: no match here"},
+    {"tool", Table::kInput, 1, Type::kUint16, Field::kTool, 1, "", true, ValueSet::kNone, 0x2020,
+     15, 1, "which tool the pose is for; 0: no pick"},
+    {"pick", Table::kInput, 2, Type::kUint16, Field::kPick, 1, "", true, ValueSet::kNone, 0x2020,
+     16, 1, "which of the part's picks, from 1; 0: none of them"},
+};
+
 constexpr std::size_t kSingleCount = std::size(kSingle);
-constexpr std::size_t kFurtherCount = std::size(kFurther);
-constexpr std::size_t kEntryCount = kSingleCount + kFurtherBlocks * kFurtherCount;
+constexpr std::size_t kEntryCount =
+    kSingleCount + kFurtherBlocks * (std::size(kFurther) + std::size(kFurtherPick));
+
+// The entries once for each further match, each block `words` after the one before.
+template <std::size_t kCount>
+constexpr std::size_t add_blocks(const Entry (&entries)[kCount], int address, int words,
+                                 std::array<Entry, kEntryCount>& table, std::size_t at) {
+  for (int block = 0; block < kFurtherBlocks; ++block) {
+    for (Entry entry : entries) {
+      entry.address = static_cast<std::uint16_t>(address + block * words + entry.address);
+      entry.can_index = static_cast<std::uint16_t>(entry.can_index + block);
+      entry.block = static_cast<std::uint8_t>(block + 1);
+      table[at++] = entry;
+    }
+  }
+  return at;
+}
 
 constexpr std::array<Entry, kEntryCount> whole_table() {
   std::array<Entry, kEntryCount> table{};
   for (std::size_t i = 0; i < kSingleCount; ++i) table[i] = kSingle[i];
-  for (int block = 0; block < kFurtherBlocks; ++block) {
-    for (std::size_t i = 0; i < kFurtherCount; ++i) {
-      Entry entry = kFurther[i];
-      entry.address =
-          static_cast<std::uint16_t>(kFurtherAddress + block * kFurtherWords + entry.address);
-      entry.can_index = static_cast<std::uint16_t>(entry.can_index + block);
-      entry.block = static_cast<std::uint8_t>(block + 1);
-      table[kSingleCount + static_cast<std::size_t>(block) * kFurtherCount + i] = entry;
-    }
-  }
+  const std::size_t at = add_blocks(kFurther, kFurtherAddress, kFurtherWords, table, kSingleCount);
+  (void)add_blocks(kFurtherPick, kFurtherPickAddress, kFurtherPickWords, table, at);
   return table;
 }
 constexpr auto kTable = whole_table();

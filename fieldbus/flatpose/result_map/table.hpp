@@ -10,13 +10,15 @@
 
 namespace flatpose::result_map {
 
-inline constexpr std::uint16_t kMapVersion = 1;
-inline constexpr int kRegisterCount = 360;   ///< Readable; gaps between entries read 0.
+inline constexpr std::uint16_t kMapVersion = 2;
+inline constexpr int kRegisterCount = 384;   ///< Readable; gaps between entries read 0.
 inline constexpr int kResultAddress = 100;   ///< The block that is read whole.
-inline constexpr int kResultWords = 93;      ///< At most 125: one read.
+inline constexpr int kResultWords = 96;      ///< At most 125: one read.
 inline constexpr int kFurtherAddress = 200;  ///< The eight short blocks.
 inline constexpr int kFurtherWords = 20;
 inline constexpr int kFurtherBlocks = 8;
+inline constexpr int kFurtherPickAddress = 360;  ///< Eight more: how each is to be picked.
+inline constexpr int kFurtherPickWords = 3;
 
 /// All entries, by rising address, none over another.
 [[nodiscard]] std::span<const Entry> entries() noexcept;

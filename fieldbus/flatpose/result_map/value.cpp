@@ -17,6 +17,8 @@ Value of_match(Field field, const job::ShownMatch& match, Convention convention)
   };
   switch (field) {
     case Field::kPart: return {static_cast<double>(match.part)};
+    case Field::kTool: return {static_cast<double>(match.tool)};
+    case Field::kPick: return {static_cast<double>(match.pick)};
     case Field::kScore: return {match.score};
     case Field::kVisible: return {match.visible};
     case Field::kPositionX: return {match.position_mm.x};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flatpose/core/maths.hpp"
+#include "flatpose/locate/sigma.hpp"
 #include "flatpose/model/equivalents.hpp"
 
 namespace flatpose::locate {
@@ -103,16 +104,15 @@ Match Acceptance::to_match(const refine::PolishResult& polished,
   const refine::Matrix<6> c =
       refine::covariance_seen_from(refine::Matrix<6>(polished.covariance.data()),
                                    face_T_polished.inverse() * match.face_T_object);
-  match.sigma_rad = {std::sqrt(c(0, 0)), std::sqrt(c(1, 1)), std::sqrt(c(2, 2))};
-  const Rotation& r = match.face_T_object.rotation;
-  const auto variance_along = [&](int axis) {
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) sum += r.m[3 * axis + i] * c(3 + i, 3 + j) * r.m[3 * axis + j];
-    return sum;
-  };
-  match.sigma_mm = {std::sqrt(variance_along(0)), std::sqrt(variance_along(1)),
-                    std::sqrt(variance_along(2))};
+  std::array<double, 36> rows;
+  std::size_t at = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) rows[6 * i + j] = c(i, j);
+    for (int j = i; j < 6; ++j) match.covariance[at++] = static_cast<float>(c(i, j));
+  }
+  const Sigma sigma = sigma_of(match.face_T_object.rotation, rows);
+  match.sigma_mm = sigma.mm;
+  match.sigma_rad = sigma.rad;
   return match;
 }
 

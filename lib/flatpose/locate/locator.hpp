@@ -61,6 +61,9 @@ struct Match {
   bool turn_is_free = false;  ///< Full symmetry: sigma_rad.z means nothing.
   double edge_rms_mm = 0.0;
   double surface_rms_mm = 0.0;
+  /// Of (turn, shift) in the object's own axes, rad and mm, the upper triangle by rows: what
+  /// sigma.hpp tells other points' sigma from.
+  std::array<float, 21> covariance{};
 };
 
 struct Timings {

@@ -11,6 +11,7 @@
 #include "flatpose/job/rules.hpp"
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/result_map/registers.hpp"
+#include "port/linux/daemon/pick_pose.hpp"
 #include "port/linux/files/scan.hpp"
 #include "port/linux/modbus/allow_list.hpp"
 #include "port/linux/realtime/config.hpp"
@@ -54,13 +55,7 @@ struct SourceConfig {
 struct PartConfig {
   std::string name;
   std::string file;
-};
-
-/// What withholds a pose that was found, in the job's frame.
-struct PoseLimits {
-  Vec3 least_mm{-1e9, -1e9, -1e9};
-  Vec3 greatest_mm{1e9, 1e9, 1e9};
-  double tilt_rad = 10.0;  ///< Of the part against the plane.
+  std::vector<PickPose> picks;  ///< By falling priority.
 };
 
 /// [[job]]
@@ -69,7 +64,7 @@ struct JobConfig {
   std::vector<int> parts;       ///< Indices into Config::parts, searched in the same scan.
   locate::LocateConfig locate;  ///< Its deadline is the job's.
   std::string work_file;        ///< Of frame "work".
-  PoseLimits limits;
+  ReportRule report;
 };
 
 struct Config {

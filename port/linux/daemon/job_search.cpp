@@ -1,10 +1,6 @@
 #include "port/linux/daemon/job_search.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "flatpose/core/maths.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -33,20 +29,10 @@ Answer answer_of_fault(Status status) noexcept {
   return is_of_job ? Answer::kBadJob : Answer::kInternal;
 }
 
-bool is_inside(const Pose& face_T_object, const Frames& frames, const PoseLimits& limits) noexcept {
-  const Vec3& p = face_T_object.position_mm;
-  const Vec3& low = limits.least_mm;
-  const Vec3& high = limits.greatest_mm;
-  const bool is_in_box = p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y &&
-                         p.z >= low.z && p.z <= high.z;
-  const Rotation work_R_object = frames.work_T_face().rotation * face_T_object.rotation;
-  return is_in_box && std::acos(std::clamp(work_R_object.m[8], -1.0, 1.0)) <= limits.tilt_rad;
-}
-
 /// As the locator orders the matches of one part.
-double merit(const job::FoundMatch& match, locate::Order order, const Frames& frames) noexcept {
+double merit(const locate::Match& match, locate::Order order, const Frames& frames) noexcept {
   switch (order) {
-    case locate::Order::kHeight: return (frames.work_T_face() * match.frame_T_pick.position_mm).z;
+    case locate::Order::kHeight: return (frames.work_T_face() * match.face_T_object.position_mm).z;
     case locate::Order::kVisible: return match.visible;
     case locate::Order::kScore: break;
   }
@@ -97,38 +83,44 @@ void JobSearch::search_part(int part, int index, const job::Order& order, const 
   const std::int64_t now_us = host.clock.now_us();
   const std::int64_t end_us = std::min(order.answer_by_us, start_us_ + config.deadline_us);
   config.deadline_us = std::max<std::int64_t>(end_us - now_us, 1);
-  const auto& model = *set_.parts[static_cast<std::size_t>(part)].model;
-  const Status status = locator_.locate(model, scan.view, frames_, config, host, *found_);
+  const Part& searched = set_.parts[static_cast<std::size_t>(part)];
+  const Status status = locator_.locate(*searched.model, scan.view, frames_, config, host, *found_);
   Answer answer = answer_of_fault(status);
   if (status == Status::kOk) {
-    add_matches(index);
+    add_matches(searched, index);
     answer = job::answer_of(found_->outcome);
   }
   const bool is_first = result_.answer == Answer::kPending;
   if (is_first || rank(answer) < rank(result_.answer)) result_.answer = answer;
 }
 
-// Into their places among those of the parts before; the last fall off.
-void JobSearch::add_matches(int index) noexcept {
-  const locate::LocateConfig& config = job_->config.locate;
+void JobSearch::add_matches(const Part& part, int index) noexcept {
+  const JobConfig& config = job_->config;
   for (const locate::Match& match : found_->found()) {
-    if (!is_inside(match.face_T_object, frames_, job_->config.limits)) {
+    const auto told = report(match, part.picks, config.report, frames_);
+    if (!told) {
       ++outside_count_;
       continue;
     }
-    job::FoundMatch added{match.face_T_object, static_cast<std::uint16_t>(index),
-                          match.score,         match.visible,
-                          match.sigma_mm,      match.sigma_rad};
-    if (match.turn_is_free) added.sigma_rad.z = std::numeric_limits<double>::quiet_NaN();
-    const double value = merit(added, config.order, frames_);
-    int place = result_.match_count;
-    while (place > 0 && merit(result_.matches[place - 1], config.order, frames_) < value) --place;
-    if (place >= config.max_matches) continue;
-    result_.match_count = std::min(result_.match_count + 1, config.max_matches);
-    const auto begin = result_.matches.begin();
-    std::move_backward(begin + place, begin + result_.match_count - 1, begin + result_.match_count);
-    result_.matches[place] = added;
+    add({told->face_T_reported, static_cast<std::uint16_t>(index), match.score, match.visible,
+         told->sigma_mm, told->sigma_rad, told->tool, told->pick},
+        merit(match, config.locate.order, frames_));
   }
+}
+
+// Into its place among those of the parts before; the last fall off.
+void JobSearch::add(const job::FoundMatch& added, double merit) noexcept {
+  const int count_max = job_->config.locate.max_matches;
+  int place = result_.match_count;
+  while (place > 0 && merits_[place - 1] < merit) --place;
+  if (place >= count_max) return;
+  result_.match_count = std::min(result_.match_count + 1, count_max);
+  for (int i = result_.match_count - 1; i > place; --i) {
+    result_.matches[i] = result_.matches[i - 1];
+    merits_[i] = merits_[i - 1];
+  }
+  result_.matches[place] = added;
+  merits_[place] = merit;
 }
 
 }  // namespace flatpose::daemon

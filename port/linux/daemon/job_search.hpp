@@ -2,6 +2,7 @@
 // A job in a scan: each of its parts searched, what was found put in order, held against the job's
 // limits, and told as the job machine wants it.
 
+#include <array>
 #include <memory>
 
 #include "flatpose/core/host.hpp"
@@ -25,7 +26,8 @@ class JobSearch {
  private:
   void search_part(int part, int index, const job::Order& order, const HeldScan& scan,
                    const Host& host) noexcept;
-  void add_matches(int index) noexcept;
+  void add_matches(const Part& part, int index) noexcept;
+  void add(const job::FoundMatch& added, double merit) noexcept;
   [[nodiscard]] job::Answer without_match() const noexcept;
 
   const JobSet& set_;
@@ -34,6 +36,7 @@ class JobSearch {
   const Job* job_ = nullptr;
   Frames frames_;
   job::ScanResult result_;
+  std::array<double, job::kMatchesPerScanMax> merits_{};  ///< Of the result's matches.
   std::int64_t start_us_ = 0;
   int outside_count_ = 0;
 };

@@ -1,10 +1,11 @@
-// [[part]] and [[job]]: what a master may ask for.
+// [[job]]: what a master may ask for.
 
 #include <algorithm>
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/job/order.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/rotation_setting.hpp"
 #include "port/linux/daemon/section.hpp"
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/tool/region_text.hpp"
@@ -12,7 +13,6 @@
 namespace flatpose::daemon {
 namespace {
 
-constexpr std::size_t kPartsMax = 64;
 constexpr std::size_t kPartsPerJobMax = 8;
 constexpr Range kJobs{1, 65535};
 constexpr Range kTimes_ms{1, 3'600'000};
@@ -25,13 +25,7 @@ constexpr std::int64_t kUsPerMs = 1000;
 // In the order of the enumerations.
 const std::vector<std::string> kFrames{"scan", "work"};
 const std::vector<std::string> kOrders{"score", "height", "visible"};
-
-std::vector<std::string> convention_words() {
-  std::vector<std::string> words;
-  for (int i = 0; i < kConventionCount; ++i)
-    words.emplace_back(to_string(static_cast<Convention>(i)));
-  return words;
-}
+const std::vector<std::string> kPoses{"object", "pick"};
 
 void read_parts_of(Section& section, const Config& config, JobConfig& job) {
   for (const std::string& name : section.texts("parts", kPartsPerJobMax)) {
@@ -85,29 +79,24 @@ void read_limits(Section& section, PoseLimits& limits) {
     limits.tilt_rad = *tilt_deg * kRadPerDeg;
 }
 
-}  // namespace
-
-void read_part(Section section, Config& config) {
-  const auto name = section.text("name");
-  const auto file = section.file("file");
-  if (!name || name->empty()) section.fail("name", "a part needs a name", "write name = \"...\"");
-  if (!file)
-    section.fail("file", "a part needs a file",
-                 "write file = \"PART.fpt\", as flatpose teach wrote it");
-  for (const PartConfig& other : config.parts)
-    if (other.name == *name) section.fail("name", "there are two parts of this name", "rename one");
-  if (config.parts.size() == kPartsMax)
-    section.fail("name", "there are more than 64 parts", "take some out");
-  section.finish();
-  config.parts.push_back({*name, *file});
+void read_report(Section& section, const Config& config, JobConfig& job) {
+  read_limits(section, job.report.limits);
+  const bool has_picks = std::any_of(job.parts.begin(), job.parts.end(), [&](int part) {
+    return !config.parts[static_cast<std::size_t>(part)].picks.empty();
+  });
+  const bool is_usually_pick = has_picks || job.rule.frame == job::FrameName::kRobot;
+  job.report.kind =
+      static_cast<PoseKind>(section.choice("pose", kPoses).value_or(is_usually_pick ? 1 : 0));
 }
+
+}  // namespace
 
 void read_job(Section section, Config& config) {
   JobConfig job;
   read_rule(section, job.rule);
   read_parts_of(section, config, job);
   read_search_of(section, job);
-  read_limits(section, job.limits);
+  read_report(section, config, job);
   job.work_file = section.file("work").value_or("");
   const bool needs_work = job.rule.frame == job::FrameName::kWork;
   section.finish();

@@ -14,7 +14,8 @@ namespace flatpose::daemon {
 
 struct Part {
   std::unique_ptr<model::Template> model;
-  std::uint32_t hash = 0;  ///< Of the file.
+  std::uint32_t hash = 0;       ///< Of the file.
+  std::vector<PickPose> picks;  ///< By falling priority; never empty.
 };
 
 struct Job {

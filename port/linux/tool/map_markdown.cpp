@@ -95,8 +95,11 @@ std::string map_markdown() {
       "Further matches: the first of eight blocks", [](const Entry& e) { return e.block == 1; },
       text);
   text += formatted(
-      "The others follow every %d registers. A block is whole when number and tail are yours.\n\n",
-      result_map::kFurtherWords);
+      "Blocks from %d follow every %d registers; one is whole when number and tail are yours. "
+      "Those "
+      "from %d (%d registers\neach) say how the same matches are to be picked.\n\n",
+      result_map::kFurtherAddress, result_map::kFurtherWords, result_map::kFurtherPickAddress,
+      result_map::kFurtherPickWords);
   add_values("`status`: cause; remedy", ValueSet::kAnswers, text);
   add_values("`command`", ValueSet::kCommands, text);
   add_values("`refused_status`", ValueSet::kRefusals, text);

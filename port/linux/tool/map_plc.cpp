@@ -60,6 +60,8 @@ VAR_OUTPUT
     iStatus : INT;
     uiRefused : UINT;            // why, when refused
     uiMatchesLeft : UINT;
+    uiTool : UINT;               // which tool the pose is for; 0: the part's own pose
+    uiPick : UINT;
     lrX : LREAL;                 // mm
     lrY : LREAL;
     lrZ : LREAL;
@@ -134,8 +136,8 @@ std::string waiting() {
         $xError := TRUE;
         $iState := 1;
     ELSIF $xLinkOk AND )" +
-         word("done_number") + " = $uiNumber AND " + word("done_number_tail") +
-         " = $uiNumber AND " + word("result_is_readers") + R"( = 1 THEN
+         word("done_number") + " = $uiNumber AND " + word("done_number_end") + " = $uiNumber AND " +
+         word("result_is_readers") + R"( = 1 THEN
         $iStatus := WORD_TO_INT($awBlock[)" +
          std::to_string(place_of("status")) + R"(]);
         $xDone := TRUE;
@@ -162,7 +164,8 @@ std::string pose(PlcDialect dialect) {
     text += formatted("    $%s := DINT_TO_LREAL(%s) * %s;\n", target.local,
                       pair_of(target.name, dialect).c_str(), target.scale);
   }
-  return text + "END_IF;\n";
+  return text + "    $uiTool := " + word("tool") + ";\n    $uiPick := " + word("pick") +
+         ";\nEND_IF;\n";
 }
 
 // The pose is taken in the cycle in which the answer is, never from a later block.

@@ -105,6 +105,9 @@ std::string map_c_header() {
                     result_map::kResultAddress, result_map::kResultWords);
   text += formatted("#define FLATPOSE_FURTHER_ADDRESS %d\n#define FLATPOSE_FURTHER_WORDS %d\n",
                     result_map::kFurtherAddress, result_map::kFurtherWords);
+  text += formatted(
+      "#define FLATPOSE_FURTHER_PICK_ADDRESS %d\n#define FLATPOSE_FURTHER_PICK_WORDS %d\n",
+      result_map::kFurtherPickAddress, result_map::kFurtherPickWords);
   text += "#define FLATPOSE_NONE_INT32 (-2147483647 - 1)\n\nenum {\n";
   int writable_end = 0;
   for (const Entry& entry : result_map::entries()) {

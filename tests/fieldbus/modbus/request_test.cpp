@@ -30,10 +30,10 @@ Bytes words(std::uint8_t function, std::initializer_list<int> values) {
 TEST(Understand, ReadsWithinTheMap) {
   for (const std::uint8_t function : {std::uint8_t{3}, std::uint8_t{4}}) {
     EXPECT_EQ(told(words(function, {0, 125})), kFine);
-    EXPECT_EQ(told(words(function, {235, 125})), kFine);
-    EXPECT_EQ(told(words(function, {236, 125})), kAddress);
-    EXPECT_EQ(told(words(function, {359, 1})), kFine);
-    EXPECT_EQ(told(words(function, {360, 1})), kAddress);
+    EXPECT_EQ(told(words(function, {259, 125})), kFine);
+    EXPECT_EQ(told(words(function, {260, 125})), kAddress);
+    EXPECT_EQ(told(words(function, {383, 1})), kFine);
+    EXPECT_EQ(told(words(function, {384, 1})), kAddress);
     EXPECT_EQ(told(words(function, {65535, 125})), kAddress);  // no way round the end
     EXPECT_EQ(told(words(function, {0, 126})), kValue);
     EXPECT_EQ(told(words(function, {65535, 126})), kValue);  // count before address

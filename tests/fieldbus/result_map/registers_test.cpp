@@ -24,7 +24,9 @@ job::ShownMatch a_match(int index) {
           0.9 - 0.01 * i,
           0.75,
           {0.0123, 0.5, 0.25},
-          {0.1 * kRadPerDeg, 0.2 * kRadPerDeg, std::numeric_limits<double>::quiet_NaN()}};
+          {0.1 * kRadPerDeg, 0.2 * kRadPerDeg, std::numeric_limits<double>::quiet_NaN()},
+          static_cast<std::uint16_t>(40 + index),
+          static_cast<std::uint16_t>(60 + index)};
 }
 
 job::Snapshot full_snapshot() {
@@ -96,7 +98,7 @@ TEST(Registers, TellEveryFieldOfASnapshot) {
                                                {"test_uint16", 0x1234},
                                                {"test_uint32", 0x12345678},
                                                {"test_float32", 123456.0},
-                                               {"map_version", 1},
+                                               {"map_version", 2},
                                                {"done_number", 65535},
                                                {"status", 3},
                                                {"bits", 0x5a},
@@ -157,7 +159,10 @@ TEST(Registers, TellEveryFieldOfASnapshot) {
                                                {"sigma_turn_x_f", 0.1},
                                                {"sigma_turn_y_f", 0.2},
                                                {"sigma_turn_z_f", nan},
-                                               {"done_number_tail", 65535}};
+                                               {"done_number_tail", 65535},
+                                               {"tool", 41},
+                                               {"pick", 61},
+                                               {"done_number_end", 65535}};
   const auto registers = all_registers(full_snapshot());
   std::size_t seen = 0;
   for (const Entry& entry : entries()) {
@@ -194,7 +199,10 @@ TEST(Registers, TellEveryFurtherMatch) {
         {"rotation_3", 180},
         {"rotation_4", 0},
         {"visible", 0.75},
-        {"number_tail", 65535}};
+        {"number_tail", 65535},
+        {"tool_number", 65535},
+        {"tool", 40 + index},
+        {"pick", 60 + index}};
     EXPECT_NEAR(decoded(entry, registers), expected.at(entry.name), 1e-9)
         << entry.name << " of block " << int{entry.block};
   }

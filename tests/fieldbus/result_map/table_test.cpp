@@ -74,7 +74,7 @@ TEST(RegisterMap, AResultIsOneReadWithItsNumberAtBothEnds) {
   EXPECT_LE(kResultWords, 125);
   EXPECT_STREQ(entry_at(kResultAddress)->name, "map_version");
   EXPECT_STREQ(entry_at(kResultAddress + 1)->name, "done_number");
-  EXPECT_STREQ(entry_at(kResultAddress + kResultWords - 1)->name, "done_number_tail");
+  EXPECT_STREQ(entry_at(kResultAddress + kResultWords - 1)->name, "done_number_end");
   EXPECT_EQ(entry_at(kResultAddress + kResultWords), nullptr);
   for (int block = 0; block < kFurtherBlocks; ++block) {
     const int start = kFurtherAddress + block * kFurtherWords;
@@ -82,6 +82,18 @@ TEST(RegisterMap, AResultIsOneReadWithItsNumberAtBothEnds) {
     EXPECT_STREQ(entry_at(start + kFurtherWords - 1)->name, "number_tail");
     EXPECT_EQ(entry_at(start)->block, block + 1);
   }
+}
+
+// A PLC that was written for map version 1 reads 93 registers from 100, and finds all as it was.
+TEST(RegisterMap, OfVersionOneKeepsItsPlaces) {
+  EXPECT_STREQ(entry_at(192)->name, "done_number_tail");
+  EXPECT_STREQ(entry_at(190)->name, "sigma_turn_z_f");
+  EXPECT_STREQ(entry_at(142)->name, "position_x");
+  EXPECT_STREQ(entry_at(200)->name, "number");
+  EXPECT_STREQ(entry_at(359)->name, "number_tail");
+  EXPECT_EQ(entry_at(192)->can_subindex, 62);
+  EXPECT_EQ(entry_at(359)->can_index, 0x2027);
+  EXPECT_EQ(entry_at(359)->can_subindex, 13);
 }
 
 TEST(RegisterMap, FindsAFieldsFirstEntry) {

@@ -155,8 +155,8 @@ TEST(Config, HoldsBusSourceAndJobs) {
   EXPECT_EQ(job.locate.max_matches, 32);
   EXPECT_EQ(job.locate.order, locate::Order::kHeight);
   EXPECT_EQ(job.locate.region.kind, Region::Kind::kCircle);
-  EXPECT_EQ(job.limits.least_mm.y, -1.0);
-  EXPECT_EQ(job.limits.greatest_mm.y, 2.5);
+  EXPECT_EQ(job.report.limits.least_mm.y, -1.0);
+  EXPECT_EQ(job.report.limits.greatest_mm.y, 2.5);
   EXPECT_EQ(config.jobs.at(1).rule.job, 1);
   EXPECT_FALSE(parse_config(kPath, "").modbus.is_on);
 }
@@ -181,6 +181,49 @@ TEST(Config, RefusesJobsThatCannotBeRun) {
   expect_refused("[modbus]\nallow = [\"192.0.2.1/24\"]\n",
                  {"dir/f.toml:2: ", "192.0.2.1/24", "192.0.2.0/24"});
   expect_refused("[source]\nup = \"z\"\n", {"dir/f.toml:2: ", "+z, -z"});
+}
+
+TEST(Config, HoldsPicksByTheirPriority) {
+  const Config config = parse_config(
+      kPath,
+      "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n"
+      "[[part.pick]]\nposition_mm = [1, 2, 3]\n"
+      "[[part.pick]]\nrotation = [90, 0, 180]\ntool = 7\npriority = 5\n"
+      "[[part.pick]]\nrotation = [0, 0, 1, 0]\nconvention = \"abb_quaternion\"\npriority = 5\n"
+      "[[part]]\nname = \"b\"\nfile = \"b.fpt\"\n"
+      "[[job]]\nparts = [\"a\"]\n[[job]]\nnumber = 2\nparts = [\"b\"]\n"
+      "[[job]]\nnumber = 3\nparts = [\"b\", \"a\"]\npose = \"object\"\n");
+  const std::vector<PickPose>& picks = config.parts.at(0).picks;
+  ASSERT_EQ(picks.size(), 3U);
+  EXPECT_EQ(picks[0].index, 2);
+  EXPECT_EQ(picks[0].tool, 7);
+  EXPECT_NEAR(picks[0].object_T_pick.rotation.m[3], 1.0, 1e-12);  // x along y
+  EXPECT_NEAR(picks[0].object_T_pick.rotation.m[8], -1.0, 1e-12);
+  EXPECT_EQ(picks[1].index, 3);  // of equals the one that stands first
+  EXPECT_NEAR(picks[1].object_T_pick.rotation.m[8], -1.0, 1e-12);
+  EXPECT_NEAR(picks[1].object_T_pick.rotation.m[0], -1.0, 1e-12);
+  EXPECT_EQ(picks[2].index, 1);
+  EXPECT_EQ(picks[2].tool, 1);
+  EXPECT_EQ(picks[2].object_T_pick.position_mm.z, 3.0);
+  EXPECT_EQ(picks[2].object_T_pick.rotation.m, usual_pick().object_T_pick.rotation.m);
+  EXPECT_TRUE(config.parts.at(1).picks.empty());
+  EXPECT_EQ(config.jobs.at(0).report.kind, PoseKind::kPick);
+  EXPECT_EQ(config.jobs.at(1).report.kind, PoseKind::kObject);
+  EXPECT_EQ(config.jobs.at(2).report.kind, PoseKind::kObject);
+}
+
+TEST(Config, RefusesPicksThatCannotBe) {
+  const std::string part = "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n[[part.pick]]\n";
+  expect_refused(part + "position_mm = [1, 2]\n", {"dir/f.toml:5: ", "give 3"});
+  expect_refused(part + "rotation = [1, 2, 3, 4]\n", {"dir/f.toml:5: ", "give 3 at most"});
+  expect_refused(part + "rotation = [1, 2, 3]\nconvention = \"abb_quaternion\"\n",
+                 {"dir/f.toml:5: "});
+  expect_refused(part + "rotation = [1, 1, 0, 0]\nconvention = \"abb_quaternion\"\n",
+                 {"dir/f.toml:5: ", "length 1"});
+  expect_refused(part + "rotation = [1, 2, inf]\n", {"dir/f.toml:5: "});
+  expect_refused(part + "tool = 0\n", {"dir/f.toml:5: ", "between 1 and 65534"});
+  expect_refused(part + "tol = 1\n", {"dir/f.toml:5: ", "in [[pick]]", "did you mean 'tool'"});
+  expect_refused("[[pick]]\ntool = 1\n", {"dir/f.toml:1: "});
 }
 
 TEST(Config, OfTheExampleIsTheUsualOne) {
