@@ -1,6 +1,6 @@
 #pragma once
 // Which of a symmetric part's equivalent poses is reported: the one with the smallest turn from
-// object x to the face's x.
+// object x to the face's x, or the one that stands as a user prefers.
 
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/model/template.hpp"
@@ -19,5 +19,12 @@ namespace flatpose::model {
 /// without symmetry.
 [[nodiscard]] Pose canonical_equivalent(const Pose& face_T_object,
                                         const Symmetry& symmetry) noexcept;
+
+/// The turn about the axis of symmetry after which the x axis of `object_R_told`, seen in the
+/// face's xy plane, stands nearest to `angle_rad` (from the face's x to its y): of N equivalents,
+/// or, with full symmetry, of all turns: exactly there, where there is such a turn.  0 without
+/// symmetry. Cost: linear in the order.
+[[nodiscard]] double turn_to_angle_rad(const Rotation& face_R_object, const Symmetry& symmetry,
+                                       const Rotation& object_R_told, double angle_rad) noexcept;
 
 }  // namespace flatpose::model

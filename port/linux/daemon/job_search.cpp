@@ -97,7 +97,7 @@ void JobSearch::search_part(int part, int index, const job::Order& order, const 
 void JobSearch::add_matches(const Part& part, int index) noexcept {
   const JobConfig& config = job_->config;
   for (const locate::Match& match : found_->found()) {
-    const auto told = report(match, part.picks, config.report, frames_);
+    const auto told = report(match, part.model->symmetry, part.picks, config.report, frames_);
     if (!told) {
       ++outside_count_;
       continue;

@@ -44,6 +44,11 @@ void read_rule(Section& section, job::JobRule& rule) {
   rule.frame = static_cast<job::FrameName>(section.choice("frame", kFrames).value_or(0));
   rule.convention =
       static_cast<Convention>(section.choice("convention", convention_words()).value_or(0));
+  if (const auto reference =
+          read_rotation_numbers(section, "reference_rotation", rule.convention)) {
+    rule.has_reference = true;
+    rule.reference = *reference;
+  }
   rule.max_age_us = section.whole("max_age_ms", kAges_ms).value_or(0) * kUsPerMs;
   rule.answer_by_us = section.whole("answer_by_ms", kTimes_ms).value_or(10'000) * kUsPerMs;
 }
@@ -81,6 +86,8 @@ void read_limits(Section& section, PoseLimits& limits) {
 
 void read_report(Section& section, const Config& config, JobConfig& job) {
   read_limits(section, job.report.limits);
+  if (const auto angle_deg = section.number("preferred_angle_deg", -360.0, 360.0))
+    job.report.preferred_angle_rad = *angle_deg * kRadPerDeg;
   const bool has_picks = std::any_of(job.parts.begin(), job.parts.end(), [&](int part) {
     return !config.parts[static_cast<std::size_t>(part)].picks.empty();
   });

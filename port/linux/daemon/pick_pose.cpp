@@ -6,6 +6,7 @@
 
 #include "flatpose/core/maths.hpp"
 #include "flatpose/locate/sigma.hpp"
+#include "flatpose/model/equivalents.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -21,12 +22,13 @@ Vec3 without_free_axis(Vec3 sigma_rad, const Rotation& object_R_reported) noexce
   return sigma_rad;
 }
 
-Reported told(const locate::Match& match, const PickPose& pick) noexcept {
-  const locate::Sigma sigma = locate::sigma_of(match, pick.object_T_pick);
-  Reported out{match.face_T_object * pick.object_T_pick, pick.tool, pick.index, sigma.mm,
-               sigma.rad};
-  if (match.turn_is_free) out.sigma_rad = without_free_axis(sigma.rad, pick.object_T_pick.rotation);
-  return out;
+// The part turned into the equivalent that is preferred, then the pick.
+Pose object_T_told(const locate::Match& match, const model::Symmetry& symmetry,
+                   const Pose& object_T_pick, const ReportRule& rule) noexcept {
+  if (!rule.preferred_angle_rad || symmetry.order == 1) return object_T_pick;
+  const double turn_rad = model::turn_to_angle_rad(
+      match.face_T_object.rotation, symmetry, object_T_pick.rotation, *rule.preferred_angle_rad);
+  return model::turned_about_symmetry({}, symmetry, turn_rad) * object_T_pick;
 }
 
 }  // namespace
@@ -45,17 +47,20 @@ bool is_inside(const PoseLimits& limits, const Pose& face_T_reported, PoseKind k
   return is_in_box && arc_cosine(std::clamp(up, -1.0, 1.0)) <= limits.tilt_rad;
 }
 
-std::optional<Reported> report(const locate::Match& match, std::span<const PickPose> picks,
-                               const ReportRule& rule, const Frames& frames) noexcept {
-  if (rule.kind == PoseKind::kObject) {
-    if (!is_inside(rule.limits, match.face_T_object, rule.kind, frames)) return {};
-    Reported own{match.face_T_object, 0, 0, match.sigma_mm, match.sigma_rad};
-    if (match.turn_is_free) own.sigma_rad = without_free_axis(match.sigma_rad, {});
-    return own;
-  }
+std::optional<Reported> report(const locate::Match& match, const model::Symmetry& symmetry,
+                               std::span<const PickPose> picks, const ReportRule& rule,
+                               const Frames& frames) noexcept {
+  static constexpr PickPose kOwn{{}, 0, 0, 0};
+  if (rule.kind == PoseKind::kObject) picks = {&kOwn, 1};
   for (const PickPose& pick : picks) {
-    const Pose face_T_pick = match.face_T_object * pick.object_T_pick;
-    if (is_inside(rule.limits, face_T_pick, rule.kind, frames)) return told(match, pick);
+    const Pose object_T_reported = object_T_told(match, symmetry, pick.object_T_pick, rule);
+    const Pose face_T_reported = match.face_T_object * object_T_reported;
+    if (!is_inside(rule.limits, face_T_reported, rule.kind, frames)) continue;
+    const locate::Sigma sigma = locate::sigma_of(match, object_T_reported);
+    Reported told{face_T_reported, pick.tool, pick.index, sigma.mm, sigma.rad};
+    if (match.turn_is_free)
+      told.sigma_rad = without_free_axis(sigma.rad, object_T_reported.rotation);
+    return told;
   }
   return {};
 }

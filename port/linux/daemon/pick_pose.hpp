@@ -10,6 +10,7 @@
 
 #include "flatpose/geometry/frames.hpp"
 #include "flatpose/locate/locator.hpp"
+#include "flatpose/model/template.hpp"
 
 namespace flatpose::daemon {
 
@@ -50,11 +51,15 @@ struct Reported {
 struct ReportRule {
   PoseKind kind = PoseKind::kObject;
   PoseLimits limits;
+  /// Of a symmetric part the equivalent is told whose x stands nearest to this, in the frame's xy
+  /// plane; none: the one that the search gave.
+  std::optional<double> preferred_angle_rad{};
 };
 
 /// The part's own pose, or of `picks`, which are in the order of their priority, the first; inside
 /// the limits.  None: all are outside.  Cost: microseconds a pick.  Memory: none.
 [[nodiscard]] std::optional<Reported> report(const locate::Match& match,
+                                             const model::Symmetry& symmetry,
                                              std::span<const PickPose> picks,
                                              const ReportRule& rule, const Frames& frames) noexcept;
 

@@ -162,5 +162,68 @@ TEST(CanonicalEquivalent, BreaksATieTheSameWayEachTime) {
   }
 }
 
+/// Of the told frame's x, in the face's xy plane, against an angle.
+double off_rad(const Rotation& face_R_object, double turn_rad, const Rotation& told, double angle) {
+  const Vec3 x = (face_R_object * rotation_about_z(turn_rad) * told).column(0);
+  return std::fabs(std::remainder(std::atan2(x.y, x.x) - angle, 2.0 * kPi));
+}
+
+std::vector<Rotation> told_frames() {
+  return {{}, Rotation{{1, 0, 0, 0, -1, 0, 0, 0, -1}}, rotation_from_vector({2.9, 0.4, -0.7})};
+}
+
+TEST(PreferredAngle, OfNEquivalentsTheNearestByBruteForce) {
+  std::mt19937 random(3);
+  for (const Pose& pose : made_poses()) {
+    for (const Rotation& told : told_frames()) {
+      const int order = 1 + static_cast<int>(random() % kOrderMax);
+      const double angle_rad = uniform(random, -kPi, kPi);
+      double least = 10.0;
+      for (int i = 0; i < order; ++i)
+        least = std::min(least, off_rad(pose.rotation, step_rad(order) * i, told, angle_rad));
+      const double turn = turn_to_angle_rad(pose.rotation, symmetry(order), told, angle_rad);
+      EXPECT_NEAR(off_rad(pose.rotation, turn, told, angle_rad), least, 1e-9);
+      EXPECT_NEAR(std::remainder(turn, step_rad(order)), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(PreferredAngle, WithFullSymmetryIsMetExactly) {
+  std::mt19937 random(5);
+  for (const Pose& pose : made_poses()) {
+    for (const Rotation& told : {told_frames()[0], told_frames()[1]}) {
+      const double angle_rad = uniform(random, -kPi, kPi);
+      const double turn =
+          turn_to_angle_rad(pose.rotation, symmetry(kFullSymmetry), told, angle_rad);
+      EXPECT_NEAR(off_rad(pose.rotation, turn, told, angle_rad), 0.0, 1e-9);
+    }
+  }
+}
+
+// An x that leans more than the part cannot point everywhere: then the best of many turns.
+TEST(PreferredAngle, WithFullSymmetryIsMetByAnyXThatReachesIt) {
+  std::mt19937 random(6);
+  int met = 0;
+  for (const Pose& pose : made_poses()) {
+    const Rotation told = rotation_from_vector({0.0, uniform(random, -1.2, 1.2), 0.3});
+    const double angle_rad = uniform(random, -kPi, kPi);
+    double least = 10.0;
+    for (int i = 0; i < 3600; ++i)
+      least = std::min(least, off_rad(pose.rotation, 2.0 * kPi * i / 3600, told, angle_rad));
+    const double turn = turn_to_angle_rad(pose.rotation, symmetry(kFullSymmetry), told, angle_rad);
+    if (least > 0.02) continue;
+    EXPECT_NEAR(off_rad(pose.rotation, turn, told, angle_rad), 0.0, 1e-9);
+    ++met;
+  }
+  EXPECT_GT(met, 150);
+}
+
+TEST(PreferredAngle, OfAPartWithoutSymmetryTurnsNothing) {
+  EXPECT_EQ(turn_to_angle_rad({}, {}, {}, 1.0), 0.0);
+  // Nor does an x along the axis of symmetry point anywhere.
+  const Rotation upright = rotation_from_vector({0.0, -0.5 * kPi, 0.0});
+  EXPECT_TRUE(std::isfinite(turn_to_angle_rad({}, {kFullSymmetry, 0, 0}, upright, 1.0)));
+}
+
 }  // namespace
 }  // namespace flatpose::model

@@ -226,6 +226,27 @@ TEST(Config, RefusesPicksThatCannotBe) {
   expect_refused("[[pick]]\ntool = 1\n", {"dir/f.toml:1: "});
 }
 
+TEST(Config, HoldsWhatAJobPrefers) {
+  const std::string job = "[[part]]\nname = \"a\"\nfile = \"a.fpt\"\n[[job]]\nparts = [\"a\"]\n";
+  const Config plain = parse_config(kPath, job);
+  EXPECT_FALSE(plain.jobs.at(0).rule.has_reference);
+  EXPECT_FALSE(plain.jobs.at(0).report.preferred_angle_rad);
+  const Config degrees =
+      parse_config(kPath, job + "preferred_angle_deg = -90\nreference_rotation = [0, 0, 180]\n");
+  EXPECT_TRUE(degrees.jobs.at(0).rule.has_reference);
+  EXPECT_NEAR(degrees.jobs.at(0).rule.reference[2], 3.14159265, 1e-8);
+  EXPECT_NEAR(degrees.jobs.at(0).report.preferred_angle_rad.value_or(0), -1.57079633, 1e-8);
+  const Config vector = parse_config(
+      kPath, job + "convention = \"ur_rotation_vector\"\nreference_rotation = [3.1, 0, 0]\n");
+  EXPECT_EQ(vector.jobs.at(0).rule.reference[0], 3.1);
+  const Config quaternion = parse_config(
+      kPath, job + "convention = \"abb_quaternion\"\nreference_rotation = [0, 1, 0, 0]\n");
+  EXPECT_EQ(quaternion.jobs.at(0).rule.reference[1], 1.0);
+  expect_refused(job + "reference_rotation = [0, 180]\n", {"dir/f.toml:6: ", "give 3"});
+  expect_refused(job + "reference_rotation = [0, 0, 1000]\n", {"dir/f.toml:6: "});
+  expect_refused(job + "preferred_angle_deg = \"x\"\n", {"dir/f.toml:6: "});
+}
+
 TEST(Config, OfTheExampleIsTheUsualOne) {
   const Config example = load_config(FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml");
   const Config usual = parse_config(kPath, "");

@@ -109,5 +109,21 @@ TEST_F(JobsServed, PickIsComposedWithTheObjectsPose) {
   expect_at(usual, scan_T_object * Rows::about(0, 180));
 }
 
+TEST_F(JobsServed, ReferenceRotationChoosesTheBranch) {
+  const std::string jobs =
+      "pose = \"pick\"\n[[job]]\nnumber = 2\nparts = [\"pad\"]\npose = \"pick\"\n"
+      "reference_rotation = [360, 0, 0]\n";
+  RunningDaemon daemon({"--config", dry_run(jobs)});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  const Plc::Block plain = plc.trigger(1, 0, 1, 1);
+  const Plc::Block near = plc.trigger(2, 0, 1, 2);
+  const auto turns = [](std::int64_t raw) { return static_cast<double>(raw) / 360'000.0; };
+  const double apart = turns(near[Field::kRotation1]) - turns(plain[Field::kRotation1]);
+  EXPECT_NEAR(apart, std::round(apart), 1e-5);
+  EXPECT_NEAR(turns(near[Field::kRotation1]), 1.0, 0.5);
+  EXPECT_LT(std::fabs(turns(plain[Field::kRotation1])), 0.5 + 1e-6);
+}
+
 }  // namespace
 }  // namespace flatpose::daemon
