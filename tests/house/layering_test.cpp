@@ -19,7 +19,7 @@ const std::vector<std::string> kRooms{"core",  "geometry",   "autodiff", "rectif
                                       "teach", "flatpose.h", "c_api"};
 
 // What a PLC sees, without a socket: above all of lib, below port.
-const std::vector<std::string> kBusRooms{"job", "result_map", "modbus"};
+const std::vector<std::string> kBusRooms{"job", "result_map", "modbus", "can"};
 
 // The same for port/linux: what asks the system for one thing, then what needs all of it.
 const std::vector<std::string> kLinuxRooms{"clock",   "cpu",    "files", "realtime",

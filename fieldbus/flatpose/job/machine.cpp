@@ -64,6 +64,8 @@ Outputs Machine::process(std::int64_t now_us, const Inputs& inputs) noexcept {
   order_ = {};
   Outputs out;
   pass_time(now_us_);
+  if (inputs.lost_master != kNobody && ownership_.release(inputs.lost_master, now_us_))
+    pass_time(now_us_);
   if (inputs.jobs != nullptr) jobs_ = *inputs.jobs;
   if (inputs.event != nullptr) take_event(*inputs.event);
   if (inputs.request != nullptr) {

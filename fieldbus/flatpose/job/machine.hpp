@@ -49,6 +49,7 @@ enum class Verdict : std::uint8_t {
 
 /// At most one of each; null: none.
 struct Inputs {
+  Address lost_master = kNobody;   ///< Known to be gone: its lease, if it has it, ends now.
   const JobTable* jobs = nullptr;  ///< Validated; in force from now on.
   const SearchEvent* event = nullptr;
   const Request* request = nullptr;

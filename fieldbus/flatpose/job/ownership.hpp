@@ -46,6 +46,13 @@ class Ownership {
     return record;
   }
 
+  /// Ends the lease of a master that is known to be gone.  Returns whether it had it.
+  bool release(Address address, std::int64_t now_us) noexcept {
+    if (address == kNobody || holder(now_us) != address) return false;
+    held_until_us_ = now_us;
+    return true;
+  }
+
   [[nodiscard]] bool is_held(std::int64_t now_us) const noexcept {
     return owner_ != kNobody && now_us < held_until_us_;
   }

@@ -47,6 +47,9 @@ constexpr AnswerText kTexts[] = {
     {Answer::kOutOfTime, "out_of_time",
      "time ran out before anything was verified: a part may lie there all the same",
      "give the job more time, or a smaller region; then trigger again"},
+    {Answer::kOutOfRange, "out_of_range",
+     "the pose does not fit the numbers of CAN's PDOs: farther than 8388.607 mm, or a quaternion",
+     "take another frame or convention in the job, or read the result over SDO"},
 };
 
 }  // namespace

@@ -32,6 +32,7 @@ enum class Answer : std::int16_t {
   kJobsRefused = -15,
   kPending = -16,
   kOutOfTime = -17,
+  kOutOfRange = -18,
 };
 
 [[nodiscard]] constexpr Answer answer_of(locate::Outcome outcome) noexcept {

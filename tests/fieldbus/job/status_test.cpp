@@ -19,7 +19,7 @@ TEST(Answer, HasOneTextForEachNumberWithoutAGap) {
     EXPECT_GT(std::string(text.cause).size(), 10U);
     EXPECT_GT(std::string(text.remedy).size(), 5U);
   }
-  EXPECT_EQ(*values.begin(), static_cast<int>(Answer::kOutOfTime));
+  EXPECT_EQ(*values.begin(), static_cast<int>(Answer::kOutOfRange));
   EXPECT_EQ(*values.rbegin(), static_cast<int>(Answer::kFaceUnsure));
   EXPECT_EQ(static_cast<int>(values.size()), *values.rbegin() - *values.begin() + 1);
 }

@@ -1,0 +1,143 @@
+#pragma once
+// flatpose as a CANopen node (CiA 301) with the job machine behind it. No socket, no clock: frames
+// and time come in, frames and the time of the next call go out.
+//
+//   pass_on(device.process(now, {.frame = &frame}));   a frame of the bus, or time alone
+//   while (...room... && device.next_frame(now, frame)) send(frame);
+//   wait until device.next_us()
+//
+// Nothing waits in a queue: what is to be sent is made when it is asked for, so a bus that was
+// blocked gets the newest state, not a history of it. Call process() also after the machine was
+// called by others: it looks at the machine anew each time.
+//
+//   NMT         boot-up, start, stop, pre-operational, reset node and communication
+//   SDO         the whole dictionary, expedited and segmented
+//   RPDO1       a command in eight bytes; a new command_number triggers, as everywhere
+//   TPDO1..4    state and result (report.hpp), at events or with SYNC
+//   EMCY        see emergency.hpp
+//   heartbeat   our own; and the master's, whose loss cancels what it asked for
+//
+// RPDO1: command_number (2 bytes), command_session (2), command (1), pick_outcome (1), argument
+// (2): the job, or with report_pick the pick_number. A number that is 0 or was seen only shows that
+// the master lives; a refused one never runs later, also when another master holds the lease.
+//
+// The master is an owner like any host (job/ownership.hpp), by its node id. Any command, SDO
+// request or heartbeat of its renews the lease.
+//
+// Thread: the machine's.  Memory: some 4 kB, none of it allocated.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "flatpose/can/config.hpp"
+#include "flatpose/can/dictionary.hpp"
+#include "flatpose/can/emergency.hpp"
+#include "flatpose/can/frame.hpp"
+#include "flatpose/can/heartbeat.hpp"
+#include "flatpose/can/network_state.hpp"
+#include "flatpose/can/parameters.hpp"
+#include "flatpose/can/report.hpp"
+#include "flatpose/can/sdo_server.hpp"
+#include "flatpose/can/transmit_pdo.hpp"
+#include "flatpose/job/machine.hpp"
+
+namespace flatpose::can {
+
+/// The controller's own state, as the link learns it.
+enum class BusState : std::uint8_t { kActive, kErrorPassive, kOff };
+
+struct BusEvent {
+  BusState state = BusState::kActive;
+  bool has_lost_frames = false;  ///< Frames came that could not be read.
+};
+
+/// At most one of each; null: none.
+struct Inputs {
+  const BusEvent* bus = nullptr;
+  const Frame* frame = nullptr;
+};
+
+class Device {
+ public:
+  /// Refers to the machine, which must outlive it.
+  explicit Device(job::Machine& machine) noexcept : machine_(machine) {}
+
+  /// Boots: the first frame to send is the boot-up message.  Texts in the config must outlive it.
+  /// Fails: kInvalidArgument.
+  [[nodiscard]] Status init(const Config& config, std::int64_t now_us) noexcept;
+
+  /// Returns what the machine said: an order for the search, and when it wants to be called.
+  /// Cost: microseconds.  Fails: never; what no node would answer is passed over.
+  job::Outputs process(std::int64_t now_us, const Inputs& inputs) noexcept;
+
+  /// The next frame that may go out now, in the order of their weight.  Returns whether there is
+  /// one. Do not ask while the bus is off.
+  [[nodiscard]] bool next_frame(std::int64_t now_us, Frame& frame) noexcept;
+
+  /// Call process(), then next_frame(), at this time at the latest.
+  [[nodiscard]] std::int64_t next_us() const noexcept;
+
+  [[nodiscard]] NetworkState state() const noexcept { return state_; }
+  [[nodiscard]] const Config& config() const noexcept { return config_; }
+  [[nodiscard]] std::uint8_t error_register() const noexcept { return log_.error_register(); }
+
+ private:
+  void boot(std::int64_t now_us) noexcept;
+  void enter(NetworkState state, std::int64_t now_us) noexcept;
+  void pass_time() noexcept;
+  void take_bus(const BusEvent& event) noexcept;
+  void take_frame(const Frame& frame) noexcept;
+  void take_network_command(const Frame& frame) noexcept;
+  void take_sync() noexcept;
+  void take_heartbeat(const Frame& frame) noexcept;
+  void take_rpdo(const Frame& frame) noexcept;
+  void take_command(const Frame& frame) noexcept;
+  void take_sdo(const Frame& frame) noexcept;
+
+  void run(const job::Inputs& inputs) noexcept;
+  void hear() noexcept;
+  [[nodiscard]] job::Verdict command(const job::CommandImage& image, bool touches_number,
+                                     bool touches_control) noexcept;
+  void look() noexcept;
+  void restart_pdo(int index) noexcept;
+  void tell_fault(const job::Snapshot& snapshot) noexcept;
+  [[nodiscard]] job::Address master() const noexcept { return config_.master; }
+
+  // objects.cpp
+  [[nodiscard]] Abort read_object(std::uint16_t index, std::uint8_t subindex,
+                                  std::span<std::uint8_t, kObjectBytesMax> bytes,
+                                  std::size_t& size) const noexcept;
+  [[nodiscard]] const char* text_of(std::uint16_t index) const noexcept;
+  [[nodiscard]] std::uint32_t number_of(const Object& object) const noexcept;
+  [[nodiscard]] std::size_t whole_result(std::span<std::uint8_t> bytes) const noexcept;
+  [[nodiscard]] Abort may_write(const SdoServer::Step& step, Object& object) const noexcept;
+  [[nodiscard]] Abort write_object(const SdoServer::Step& step) noexcept;
+  [[nodiscard]] Abort write_command(const Object& object,
+                                    std::span<const std::uint8_t> bytes) noexcept;
+
+  job::Machine& machine_;
+  Config config_;
+  std::int64_t now_us_ = 0;
+  job::Outputs job_;      ///< Of this call.
+  bool was_run_ = false;  ///< Whether the machine was called in this call.
+
+  NetworkState state_ = NetworkState::kPreOperational;
+  bool owes_boot_up_ = false;
+  BusState bus_ = BusState::kActive;
+  Parameters parameters_;
+  EmergencyLog log_;
+  HeartbeatProducer producer_;
+  HeartbeatConsumer consumer_;
+  SdoServer sdo_;
+  std::array<TransmitPdo, kTpdoCount> tpdos_;
+  Frame rpdo_;  ///< Waits for SYNC.
+  bool has_rpdo_ = false;
+
+  Judgement judgement_;
+  std::uint16_t spent_number_ = 0;  ///< Refused before the machine saw it.
+  Report report_;
+  std::uint16_t told_fault_of_ = 0;
+};
+
+}  // namespace flatpose::can
