@@ -44,8 +44,8 @@ constexpr ReportLine kLines[kReportFieldCount] = {
      ValueSet::kNone, "B, P or ry; scaled like rotation_1"},
     {Line::kRotation3, "rotation_3", 3, true, 0.001, "deg", -kMost / 1000, kMost / 1000,
      ValueSet::kNone, "C, R or rz; scaled like rotation_1"},
-    {Line::kVisible, "visible", 1, false, 0.005, "", 0, 1, ValueSet::kNone,
-     "share of the part that could be seen; 255: none"},
+    {Line::kTool, "tool", 1, false, 1, "", 0, 254, ValueSet::kNone,
+     "which tool the pose is for; 0: the pose is the part's own, no pick. 255: none"},
 };
 
 constexpr bool lines_are_in_order() {
@@ -64,7 +64,7 @@ constexpr ReportField kFirstPoseFrame[] = {Line::kSequence, Line::kPositionX, Li
 constexpr ReportField kSecondPoseFrame[] = {Line::kSequence, Line::kPositionZ, Line::kRotation1,
                                             Line::kPart};
 constexpr ReportField kThirdPoseFrame[] = {Line::kSequence, Line::kRotation2, Line::kRotation3,
-                                           Line::kVisible};
+                                           Line::kTool};
 constexpr std::span<const ReportField> kFrames[kTpdoCount] = {kStatusFrame, kFirstPoseFrame,
                                                               kSecondPoseFrame, kThirdPoseFrame};
 
@@ -95,7 +95,7 @@ std::int32_t share(double value) noexcept {
 
 void show_no_pose(Report& report) noexcept {
   for (const Wide& wide : kPose) report[wide.line] = kNoneInt24;
-  report[Line::kScore] = report[Line::kPart] = report[Line::kVisible] = kNoneUint8;
+  report[Line::kScore] = report[Line::kPart] = report[Line::kTool] = kNoneUint8;
 }
 
 // Returns whether all of it fits.
@@ -107,10 +107,10 @@ bool show_pose(const job::Snapshot& snapshot, Report& report) noexcept {
     if (raw < -kMostInt24 || raw > kMostInt24) return false;
     report[wide.line] = raw;
   }
-  if (snapshot.match.part >= kNoneUint8) return false;
+  if (snapshot.match.part >= kNoneUint8 || snapshot.match.tool >= kNoneUint8) return false;
   report[Line::kPart] = snapshot.match.part;
   report[Line::kScore] = share(snapshot.match.score);
-  report[Line::kVisible] = share(snapshot.match.visible);
+  report[Line::kTool] = snapshot.match.tool;
   return true;
 }
 

@@ -8,7 +8,7 @@
 //   TPDO1  sequence  status    bits  refused_status  judged_number   done_number
 //   TPDO2  sequence  position_x             position_y             score
 //   TPDO3  sequence  position_z             rotation_1             part
-//   TPDO4  sequence  rotation_2             rotation_3             visible
+//   TPDO4  sequence  rotation_2             rotation_3             tool
 //
 // A pose is to be taken when all four show one sequence number. It changes with the result, and so
 // does what TPDO2 to TPDO4 hold.
@@ -39,7 +39,7 @@ enum class ReportField : std::uint8_t {
   kPart,
   kRotation2,
   kRotation3,
-  kVisible,
+  kTool,
 };
 inline constexpr int kReportFieldCount = 15;
 

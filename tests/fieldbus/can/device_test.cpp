@@ -79,7 +79,8 @@ TEST(CanTrigger, RunsOnceAndTellsStateAndPoseWithOneSequence) {
   EXPECT_EQ(node.told(Field::kPositionY), 2'000);
   EXPECT_EQ(node.told(Field::kPositionZ), 3'000);
   EXPECT_EQ(node.told(Field::kScore), 180);
-  EXPECT_EQ(node.told(Field::kVisible), 160);
+  EXPECT_EQ(node.told(Field::kPart), 0);
+  EXPECT_EQ(node.told(Field::kTool), 0);
 }
 
 TEST(CanTrigger, TakesThePoseOfTheNumberBeforeBack) {

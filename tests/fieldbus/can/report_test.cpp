@@ -95,11 +95,16 @@ TEST(CanReport, HasNoRoomForAQuaternion) {
   EXPECT_FALSE(has_pose(report));
 }
 
-TEST(CanReport, HasNoRoomForPartsFromTheTwoHundredAndFiftyFifthOn) {
+TEST(CanReport, HasNoRoomForPartsAndToolsFromTheTwoHundredAndFiftyFifthOn) {
   job::Snapshot s = seen({}, {});
   s.match.part = 254;
+  s.match.tool = 253;
   EXPECT_EQ(report_of(s, {})[Field::kPart], 254);
+  EXPECT_EQ(in_bytes(report_of(s, {}), 3, 7, 1), 253);
   s.match.part = 255;
+  EXPECT_EQ(report_of(s, {})[Field::kStatus], static_cast<int>(job::Answer::kOutOfRange));
+  s.match.part = 1;
+  s.match.tool = 255;
   EXPECT_EQ(report_of(s, {})[Field::kStatus], static_cast<int>(job::Answer::kOutOfRange));
 }
 
