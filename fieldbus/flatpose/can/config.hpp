@@ -20,9 +20,8 @@ struct Config {
   /// then only the lease ends. 1016h at start.
   std::uint16_t master_silence_ms = 0;
   std::uint32_t serial = 0;       ///< 1018h:4.
-  std::uint32_t revision = 0;     ///< 1018h:3.
   const char* name = "flatpose";  ///< 1008h. Texts are cut at 32 bytes.
-  const char* hardware = "";      ///< 1009h.
+  const char* hardware = "-";     ///< 1009h.
   const char* software = "";      ///< 100Ah.
 };
 

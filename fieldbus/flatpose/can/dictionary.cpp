@@ -56,6 +56,8 @@ constexpr const char* kHighest = "Highest sub-index supported";
 
 // "flat"
 constexpr std::uint32_t kProductCode = 0x74616c66;
+// The map's, in the upper half.
+constexpr std::uint32_t kRevision = std::uint32_t{result_map::kMapVersion} << 16;
 
 constexpr Object kObjects[] = {
     {0x1000, 0, "Device type", kUnsigned32, kConst, 0},
@@ -72,8 +74,8 @@ constexpr Object kObjects[] = {
     {0x1018, 0, kHighest, kUnsigned8, kConst, 4},
     {0x1018, 1, "Vendor-ID", kUnsigned32, kConst, 0},
     {0x1018, 2, "Product code", kUnsigned32, kConst, kProductCode},
-    {0x1018, 3, "Revision number", kUnsigned32, kConst, 0},
-    {0x1018, 4, "Serial number", kUnsigned32, kConst, 0},
+    {0x1018, 3, "Revision number", kUnsigned32, kConst, kRevision},
+    {0x1018, 4, "Serial number", kUnsigned32, kReadOnly, 0},
     {0x1200, 0, kHighest, kUnsigned8, kConst, 2},
     {0x1200, 1, "COB-ID client to server (rx)", kUnsigned32, kConst, kSdoRequestBase, true},
     {0x1200, 2, "COB-ID server to client (tx)", kUnsigned32, kConst, kSdoAnswerBase, true},

@@ -84,7 +84,7 @@ const char* Device::text_of(std::uint16_t index) const noexcept {
 std::uint32_t Device::number_of(const Object& object) const noexcept {
   if (object.entry != nullptr)
     return result_map::raw_of(*object.entry, machine_.snapshot(master()), {});
-  if (object.access == Access::kConst && object.index != 0x1018)
+  if (object.access == Access::kConst)
     return object.initial + (object.adds_node ? config_.node : 0U);
   std::uint32_t value = 0;
   if (parameters_.read(object.index, object.subindex, config_.node, value)) return value;
@@ -93,9 +93,7 @@ std::uint32_t Device::number_of(const Object& object) const noexcept {
     case 0x1003:
       return object.subindex == 0 ? static_cast<std::uint32_t>(log_.history_count())
                                   : log_.history(object.subindex);
-    case 0x1018:
-      if (object.subindex == 3) return config_.revision;
-      return object.subindex == 4 ? config_.serial : object.initial;
+    case 0x1018: return config_.serial;
     case kReportIndex:
       return static_cast<std::uint32_t>(report_[static_cast<ReportField>(object.subindex)]);
     case kSmallCommandIndex: {

@@ -78,13 +78,10 @@ TEST(CanSdo, ReadsEveryObjectInTheSizeOfItsType) {
 }
 
 TEST(CanSdo, ReadsWhoIsThere) {
-  Node node({.serial = 77,
-             .revision = 0x10002,
-             .hardware = "x86-64",
-             .software = "0.1.0 of a long name"});
+  Node node({.serial = 77, .hardware = "x86-64", .software = "0.1.0 of a long name"});
   EXPECT_EQ(node.read(0x1000, 0), 0U);
   EXPECT_EQ(node.read(0x1018, 2), 0x74616c66U);
-  EXPECT_EQ(node.read(0x1018, 3), 0x10002U);
+  EXPECT_EQ(node.read(0x1018, 3), result_map::kMapVersion << 16);
   EXPECT_EQ(node.read(0x1018, 4), 77U);
   EXPECT_EQ(text(node.read_all(0x1008, 0)), "flatpose");
   EXPECT_EQ(text(node.read_all(0x1009, 0)), "x86-64");

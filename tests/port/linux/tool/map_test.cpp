@@ -24,7 +24,8 @@ TEST(MapCommand, CopiesInTheTreeAreWhatItPrints) {
   };
   for (const Copy& copy :
        {Copy{"markdown", "registers.md"}, Copy{"st", "plc/FB_Flatpose.st"},
-        Copy{"scl", "plc/FB_Flatpose.scl"}, Copy{"c", "plc/flatpose_registers.h"}}) {
+        Copy{"scl", "plc/FB_Flatpose.scl"}, Copy{"c", "plc/flatpose_registers.h"},
+        Copy{"eds", "can/flatpose.eds"}, Copy{"dbc", "can/flatpose.dbc"}}) {
     const Ran ran = run({"map", "--format", copy.format});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(ran.out, file_in_tree(copy.file))
@@ -123,8 +124,8 @@ TEST(MapCommand, FunctionBlocksCloseWhatTheyOpenAndDeclareWhatTheyUse) {
 }
 
 TEST(MapCommand, RefusesWhatItCannotPrint) {
-  expect_refused(run({"map", "--format", "eds"}), 2, "CAN");
-  expect_refused(run({"map", "--format", "dbc"}), 2, "CAN");
+  expect_refused(run({"map", "--format", "dbc", "--node", "0"}), 2, "--node");
+  expect_refused(run({"map", "--format", "dbc", "--node", "128"}), 2, "--node");
   expect_refused(run({"map", "--format", "xml"}), 2, "xml");
 }
 

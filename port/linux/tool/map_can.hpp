@@ -1,0 +1,15 @@
+#pragma once
+// The CAN node in the forms that its users' tools read. All from the dictionary and the PDOs' own
+// tables.
+
+#include <string>
+
+namespace flatpose::tool {
+
+/// An electronic data sheet (CiA 306), for whatever node id.
+[[nodiscard]] std::string map_eds();
+
+/// The frames of one node for tools that know no CANopen.
+[[nodiscard]] std::string map_dbc(int node);
+
+}  // namespace flatpose::tool
