@@ -1,0 +1,31 @@
+#pragma once
+// What carries frames: SocketCAN in the product, a simulated bus in tests.
+
+#include <cstdint>
+
+#include "flatpose/can/device.hpp"
+#include "flatpose/can/frame.hpp"
+
+namespace flatpose::can {
+
+class Link {
+ public:
+  struct Received {
+    enum class Kind : std::uint8_t { kNothing, kFrame, kBus };
+    Kind kind = Kind::kNothing;
+    Frame frame;
+    BusEvent bus;  ///< What the controller tells of itself.
+  };
+
+  /// The next that has come; does not wait.
+  [[nodiscard]] virtual Received receive() noexcept = 0;
+
+  /// Returns whether it was taken. If not there is no room at the moment, or no bus: nothing was
+  /// sent, and it may be offered again.
+  [[nodiscard]] virtual bool send(const Frame& frame) noexcept = 0;
+
+ protected:
+  ~Link() = default;
+};
+
+}  // namespace flatpose::can
