@@ -22,7 +22,7 @@ const std::vector<std::string> kRooms{"core",  "geometry",   "autodiff", "rectif
 const std::vector<std::string> kBusRooms{"job", "result_map", "modbus", "can"};
 
 // The same for port/linux: what asks the system for one thing, then what needs all of it.
-const std::vector<std::string> kLinuxRooms{"clock",   "cpu",    "files", "realtime",
+const std::vector<std::string> kLinuxRooms{"clock",   "cpu",    "files", "camera", "realtime",
                                            "threads", "modbus", "tool",  "daemon"};
 
 struct Include {

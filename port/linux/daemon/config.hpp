@@ -45,10 +45,14 @@ struct ModbusConfig {
 
 /// [source]: where scans come from.
 struct SourceConfig {
-  std::string replay;  ///< A file, or a folder of them; empty: there is no source.
+  // At most one of these; none: there is no source.
+  std::string replay;  ///< A file, or a folder of them.
+  std::string driver;  ///< The Unix socket for a camera driver.
   std::string place;
   std::optional<port::Up> up;
   bool allow_simulated = false;
+
+  [[nodiscard]] bool is_any() const noexcept { return !replay.empty() || !driver.empty(); }
 };
 
 /// [[part]]

@@ -60,6 +60,7 @@ Config config_of(const Options& options) {
     config.modbus.place = "--modbus-port";
   }
   if (!options.scan_path.empty()) {
+    config.source.driver.clear();
     config.source.replay = options.scan_path;
     config.source.place = "--scan";
   }
@@ -87,7 +88,7 @@ void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
 
 void warn(const Config& config, Log& log) {
   if (!config.modbus.is_on) log.line("warning: no [modbus]: nobody can ask for anything");
-  if (config.source.replay.empty()) log.line("warning: no [source]: there are no scans");
+  if (!config.source.is_any()) log.line("warning: no [source]: there are no scans");
   if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");
   if (!config.source.replay.empty() && !config.source.allow_simulated)
     log.line("warning: replayed scans make no pose without allow_simulated = true in [source]");

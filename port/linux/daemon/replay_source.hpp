@@ -8,7 +8,7 @@
 #include <atomic>
 #include <thread>
 
-#include "port/linux/daemon/replay_folder.hpp"
+#include "port/linux/files/replay_folder.hpp"
 #include "port/linux/daemon/scan_file.hpp"
 #include "port/linux/daemon/scan_source.hpp"
 
@@ -44,7 +44,7 @@ class ReplaySource final : public ScanSource {
 
   const std::string path_;
   const ScanFileReader reader_;
-  ReplayFolder replay_;
+  port::ReplayFolder replay_;
   ScanBuffers buffers_;
   Doorbell& taker_;
   std::array<Slot, kScanBufferCount> slots_;

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "port/linux/daemon/driver_source.hpp"
 #include "port/linux/daemon/replay_source.hpp"
 
 namespace flatpose::daemon {
@@ -23,7 +24,9 @@ void ScanSource::tell(const SourceLife& life) noexcept {
 }
 
 std::unique_ptr<ScanSource> make_scan_source(const Config& config, const ScanBuffers& buffers,
-                                             Doorbell& taker, int wake, Log&) {
+                                             Doorbell& taker, int wake, Log& log) {
+  if (!config.source.driver.empty())
+    return std::make_unique<DriverSource>(config, buffers, taker, wake, log);
   if (config.source.replay.empty()) return nullptr;
   return std::make_unique<ReplaySource>(config, buffers, taker, wake);
 }

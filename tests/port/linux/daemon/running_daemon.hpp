@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "flatpose/job/snapshot.hpp"
 #include "flatpose/result_map/table.hpp"
 
 namespace flatpose::daemon {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace flatpose::daemon {
+namespace flatpose::port {
 
 class ReplayFolder {
  public:
@@ -25,4 +25,4 @@ class ReplayFolder {
 /// to neither.
 [[nodiscard]] std::vector<std::string> scan_names_in(const std::string& folder);
 
-}  // namespace flatpose::daemon
+}  // namespace flatpose::port

@@ -1,9 +1,9 @@
-#include "port/linux/daemon/replay_folder.hpp"
+#include "port/linux/files/replay_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-namespace flatpose::daemon {
+namespace flatpose::port {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,4 +55,4 @@ bool ReplayFolder::has_any() const {
   return fs::is_regular_file(path_, error);
 }
 
-}  // namespace flatpose::daemon
+}  // namespace flatpose::port
