@@ -24,9 +24,10 @@ std::uint16_t random_session() {
   return session;
 }
 
-job::Config machine_config(const Config& config) {
+job::Config machine_config(const Config& config, std::uint16_t boot_count) {
   job::Config made;
   made.session_id = random_session();
+  made.boot_count = boot_count;
   made.handshake = config.modbus.handshake;
   made.allow_simulated = config.source.allow_simulated;
   made.lease_us = config.modbus.lease_us;
@@ -44,12 +45,13 @@ modbus::Settings settings_of(const ModbusConfig& config) {
 
 }  // namespace
 
-Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine)
+Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine,
+         std::uint16_t boot_count)
     : engine_(engine),
       modbus_(machine_, executor_, settings_of(config.modbus)),
       server_(config.modbus.place, config.modbus.bind, config.modbus.port, engine.event(),
               config.modbus.allowed) {
-  if (machine_.init(machine_config(config), jobs, clock_.now_us()) != Status::kOk)
+  if (machine_.init(machine_config(config, boot_count), jobs, clock_.now_us()) != Status::kOk)
     throw std::runtime_error("the job machine refuses its jobs");
 }
 
@@ -83,8 +85,11 @@ std::int64_t Bus::next_us() const noexcept {
 }
 
 void Bus::take_events() noexcept {
-  for (int i = 0; i < kEventsPerTurn && engine_.take(event_); ++i)
+  for (int i = 0; i < kEventsPerTurn && engine_.take(event_); ++i) {
     pass_on(machine_.process(clock_.now_us(), {.event = &event_}));
+    if (event_.kind == job::SearchEvent::Kind::kFinished)
+      engine_.note_posted(event_.ticket, clock_.now_us());
+  }
 }
 
 void Bus::pass_on(const job::Outputs& outputs) noexcept {

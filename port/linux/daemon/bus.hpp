@@ -21,7 +21,8 @@ class Bus final : private port::Responder {
  public:
   /// Listens from now on. Refers to the engine, which must outlive it.
   /// Fails: port::InputError when it cannot listen there, std::system_error.
-  Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine);
+  Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine,
+      std::uint16_t boot_count);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;

@@ -17,13 +17,13 @@ std::string cpus_text(const port::RealtimeConfig& realtime) {
 }  // namespace
 
 std::string check_report(const std::string& path, const Config& config, const std::string& root) {
-  const std::int64_t memory_bytes = held_bytes(config.search);
+  const std::int64_t memory_bytes = held_bytes(config);
   std::string text = port::printable(path, port::kSubjectBytesMax) + ": valid; " +
                      threads_text(config.search) + " on " + cpus_text(config.realtime) + ", " +
                      std::to_string(memory_bytes / kBytesPerMb) + " MB held, " +
-                     std::to_string(taken_bytes_max(config.search) / kBytesPerMb) + " at most\n";
+                     std::to_string(taken_bytes_max(config) / kBytesPerMb) + " at most\n";
   const auto list = port::advise(port::read_machine(root), config.realtime,
-                                 config.search.thread_count, taken_bytes_max(config.search));
+                                 config.search.thread_count, taken_bytes_max(config));
   for (const port::Advice& advice : list)
     text += "\n" + advice.what + ": " + port::printable(advice.why, port::kReasonBytesMax) +
             "\n  " + advice.command + "\n";
@@ -33,7 +33,7 @@ std::string check_report(const std::string& path, const Config& config, const st
 
 void check_memory(const std::string& path, const Config& config, const std::string& root) {
   const auto available = port::read_machine(root).memory_available_bytes;
-  const std::int64_t memory_bytes = held_bytes(config.search);
+  const std::int64_t memory_bytes = held_bytes(config);
   if (!available || *available >= memory_bytes) return;
   throw port::InputError(path,
                          "[search] needs " + std::to_string(memory_bytes / kBytesPerMb) +

@@ -11,6 +11,7 @@ Config read_config(Section file) {
   read_realtime(file.section("realtime"), config);
   read_modbus(file.section("modbus"), config);
   read_source(file.section("source"), config);
+  read_records(file.section("records"), config);
   for (const Section& part : file.sections("part")) read_part(part, config);
   for (const Section& job : file.sections("job")) read_job(job, config);
   file.finish();

@@ -15,6 +15,7 @@
 #include "port/linux/files/scan.hpp"
 #include "port/linux/modbus/allow_list.hpp"
 #include "port/linux/realtime/config.hpp"
+#include "port/linux/records/record_folder.hpp"
 
 namespace flatpose::daemon {
 
@@ -55,6 +56,14 @@ struct SourceConfig {
   [[nodiscard]] bool is_any() const noexcept { return !replay.empty() || !driver.empty(); }
 };
 
+/// [records]; without a folder nothing is kept.
+struct RecordsConfig {
+  std::string folder;
+  port::RecordLimits limits;
+  bool draws = true;       ///< last.png
+  std::string state_file;  ///< Where starts are counted; empty: see state_file_of().
+};
+
 /// [[part]]
 struct PartConfig {
   std::string name;
@@ -76,6 +85,7 @@ struct Config {
   port::RealtimeConfig realtime;
   ModbusConfig modbus;
   SourceConfig source;
+  RecordsConfig records;
   std::vector<PartConfig> parts;
   std::vector<JobConfig> jobs;
 };
@@ -90,14 +100,18 @@ void read_realtime(Section section, Config& config);
 
 void read_modbus(Section section, Config& config);
 void read_source(Section section, Config& config);
+void read_records(Section section, Config& config);
 void read_part(Section section, Config& config);
 /// After all parts.
 void read_job(Section section, Config& config);
 
 /// What the daemon holds in memory while it runs, stacks and loading apart.
-[[nodiscard]] std::int64_t held_bytes(const SearchConfig& search);
+[[nodiscard]] std::int64_t held_bytes(const Config& config);
 /// What it may take at most, so that limits and machine should allow it.
-[[nodiscard]] std::int64_t taken_bytes_max(const SearchConfig& search);
+[[nodiscard]] std::int64_t taken_bytes_max(const Config& config);
+/// Where starts are counted: as configured, else in the service manager's folder of state (null:
+/// none), else beside the records; empty: nowhere.
+[[nodiscard]] std::string state_file_of(const RecordsConfig& records, const char* state_directory);
 /// "2 search threads"
 [[nodiscard]] std::string threads_text(const SearchConfig& search);
 

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -20,6 +22,7 @@
 #include "port/linux/daemon/stop_signal.hpp"
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/realtime/process_setup.hpp"
+#include "port/linux/records/boot_count.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -94,15 +97,23 @@ void warn(const Config& config, Log& log) {
     log.line("warning: replayed scans make no pose without allow_simulated = true in [source]");
 }
 
+std::uint16_t counted_boots(const RecordsConfig& records, Log& log) {
+  const std::string path = state_file_of(records, std::getenv("STATE_DIRECTORY"));
+  if (path.empty()) return 0;
+  return port::count_boot(path, [&](const std::string& line) { log.line("warning: " + line); });
+}
+
 void run_service(const Options& options, const Config& config, std::ostream& err,
                  const std::string& root) {
   const JobSet jobs = load_jobs(config);
   check_memory(options.config_path, config, root);
   Log events(err);
-  StopSignal signal;  // before there are threads, which inherit what is blocked
+  StopSignal signal;              // before there are threads, which inherit what is blocked
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
   SearchEngine engine(config, jobs, events);
   std::unique_ptr<Bus> bus;
-  if (config.modbus.is_on) bus = std::make_unique<Bus>(config, jobs.rules(), engine);
+  const std::uint16_t boots = counted_boots(config.records, events);
+  if (config.modbus.is_on) bus = std::make_unique<Bus>(config, jobs.rules(), engine, boots);
   const port::ProcessSetup setup(config.realtime, root);
   log(events, setup.steps());
   engine.start();
@@ -110,7 +121,7 @@ void run_service(const Options& options, const Config& config, std::ostream& err
   if (bus) bus->start();
   warn(config, events);
   const std::string state = threads_text(config.search) + ", " +
-                            std::to_string(held_bytes(config.search) >> 20) + " MB" +
+                            std::to_string(held_bytes(config) >> 20) + " MB" +
                             (bus ? "; Modbus TCP on " + bus->name() : std::string());
   tell_ready(state);
   events.line("ready: " + state);

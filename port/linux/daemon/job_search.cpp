@@ -56,6 +56,9 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   result_.alignment_hash = job_->alignment_hash;
   const bool is_aligned = result_.frame == job::FrameName::kWork;
   frames_ = is_aligned ? job_->work : frames_of_scan(scan.up == port::Up::kPlusZ);
+  trace_.clear();
+  trace_.frames = frames_;
+  trace_.face = is_aligned ? model::Frame::kWork : model::Frame::kScan;
   int index = 0;
   for (const int part : job_->config.parts) search_part(part, ++index, order, scan, host);
   if (result_.match_count == 0 && job::may_have_pose(result_.answer))
@@ -87,6 +90,7 @@ void JobSearch::search_part(int part, int index, const job::Order& order, const 
   const Status status = locator_.locate(*searched.model, scan.view, frames_, config, host, *found_);
   Answer answer = answer_of_fault(status);
   if (status == Status::kOk) {
+    trace_.add(searched.model, *found_);
     add_matches(searched, index);
     answer = job::answer_of(found_->outcome);
   }

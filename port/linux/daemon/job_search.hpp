@@ -10,6 +10,7 @@
 #include "flatpose/locate/locator.hpp"
 #include "port/linux/daemon/job_set.hpp"
 #include "port/linux/daemon/scan_source.hpp"
+#include "port/linux/records/record.hpp"
 
 namespace flatpose::daemon {
 
@@ -22,6 +23,9 @@ class JobSearch {
   /// Until the order's time is over, or the host cancels.  Memory: none.  Fails: never, see answer.
   [[nodiscard]] job::ScanResult run(const job::Order& order, const HeldScan& scan,
                                     const Host& host) noexcept;
+
+  /// What the last run searched for and found, for the records.
+  [[nodiscard]] const port::SearchTrace& trace() const noexcept { return trace_; }
 
  private:
   void search_part(int part, int index, const job::Order& order, const HeldScan& scan,
@@ -37,6 +41,7 @@ class JobSearch {
   Frames frames_;
   job::ScanResult result_;
   std::array<double, job::kMatchesPerScanMax> merits_{};  ///< Of the result's matches.
+  port::SearchTrace trace_;
   std::int64_t start_us_ = 0;
   int outside_count_ = 0;
 };

@@ -8,12 +8,13 @@
 #include "port/linux/daemon/rotation_setting.hpp"
 #include "port/linux/daemon/section.hpp"
 #include "port/linux/files/input_error.hpp"
+#include "port/linux/records/record.hpp"
 #include "port/linux/tool/region_text.hpp"
 
 namespace flatpose::daemon {
 namespace {
 
-constexpr std::size_t kPartsPerJobMax = 8;
+constexpr std::size_t kPartsPerJobMax = port::kPartsPerSearchMax;
 constexpr Range kJobs{1, 65535};
 constexpr Range kTimes_ms{1, 3'600'000};
 constexpr Range kAges_ms{0, 3'600'000};

@@ -20,7 +20,7 @@ std::uint32_t hash_of(std::span<const std::byte> bytes) noexcept {
 
 Part load_part(const PartConfig& config) {
   const auto bytes = port::read_file(config.file, model::kTemplateFileBytesMax);
-  Part part{std::make_unique<model::Template>(), hash_of(bytes), config.picks};
+  Part part{std::make_shared<model::Template>(), hash_of(bytes), config.picks};
   if (part.picks.empty()) part.picks.push_back(usual_pick());
   const Status status = model::read_template(bytes, *part.model);
   if (status != Status::kOk)

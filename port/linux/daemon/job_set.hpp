@@ -13,7 +13,7 @@
 namespace flatpose::daemon {
 
 struct Part {
-  std::unique_ptr<model::Template> model;
+  std::shared_ptr<model::Template> model;  ///< Records keep it beyond a reload.
   std::uint32_t hash = 0;       ///< Of the file.
   std::vector<PickPose> picks;  ///< By falling priority; never empty.
 };

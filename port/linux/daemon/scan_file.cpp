@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/files/input_error.hpp"
 
 namespace flatpose::daemon {
@@ -29,6 +30,8 @@ ScanFileReader::ScanFileReader(const Config& config)
 
 std::size_t ScanFileReader::read(const std::string& path, std::span<float> buffer,
                                  HeldScan& scan) const {
+  const port::SteadyClock clock;
+  const std::int64_t start_us = clock.now_us();
   const port::Scan read = port::read_scan(path, limits_, up_);
   if (read.width_px > width_px_max_ || read.height_px > height_px_max_)
     throw port::InputError(path,
@@ -38,7 +41,9 @@ std::size_t ScanFileReader::read(const std::string& path, std::span<float> buffe
   std::copy(read.xyz_mm.begin(), read.xyz_mm.end(), buffer.begin());
   scan.view = interleaved_view(buffer, read.width_px, read.height_px);
   scan.up = read.up;
+  scan.up_reason = read.up_reason;
   scan.is_simulated = read.is_simulated;
+  scan.load_us = clock.now_us() - start_us;
   return read.xyz_mm.size();
 }
 

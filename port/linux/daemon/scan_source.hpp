@@ -26,6 +26,8 @@ namespace flatpose::daemon {
 struct HeldScan {
   RangeImageView view;
   port::Up up = port::Up::kMinusZ;
+  std::string up_reason;
+  std::int64_t load_us = 0;  ///< What it took to bring it into memory.
   std::string name;          ///< Of its file, or of the driver it comes from.
   std::string failure;       ///< A line for the log; empty: the scan is there.
   bool is_simulated = true;  ///< Not known to be what lies before the sensor.

@@ -53,6 +53,7 @@ SearchEngine::SearchEngine(const Config& config, const JobSet& jobs, Log& log)
     throw std::runtime_error(std::string("the limits of [search]: ") + to_string(status));
   source_ = make_scan_source(config, {floats(buffers_[0]), floats(buffers_[1])}, bell_,
                              event_.get(), log);
+  if (!config.records.folder.empty()) recorder_ = std::make_unique<Recorder>(config, bell_, log);
 }
 
 void SearchEngine::start() {
@@ -63,6 +64,7 @@ void SearchEngine::start() {
     std::rethrow_exception(failure_);
   }
   if (source_) source_->start();
+  if (recorder_) recorder_->start();
 }
 
 SearchEngine::~SearchEngine() { stop(); }
@@ -140,22 +142,26 @@ void SearchEngine::execute(const job::Order& order) noexcept {
       return locate(order, source_ ? source_->last() : nullptr, replaced);
     case Command::kCapture: {
       const HeldScan* const scan = next_scan(order, replaced);
-      return finish(order, result_of(scan, scan == nullptr ? Answer::kNoScan : Answer::kOk));
+      const job::ScanResult result =
+          result_of(scan, scan == nullptr ? Answer::kNoScan : Answer::kOk);
+      finish(order, result);
+      return keep(order, result, scan, false);
     }
     case Command::kVerifyAlignment: return finish(order, Answer::kNoAlignment);
-    case Command::kSaveScan: return finish(order, Answer::kNotSaved);
+    case Command::kSaveScan: return finish(order, save_scan(order, replaced));
     case Command::kReloadJobs: return finish(order, Answer::kJobsRefused);
-    case Command::kReportPick:
-      note("pick of command " + std::to_string(order.pick_number) + ": outcome " +
-           std::to_string(order.pick_outcome));
-      return finish(order, Answer::kOk);
+    case Command::kReportPick: finish(order, Answer::kOk); return report_pick(order);
     default: return finish(order, Answer::kInternal);
   }
 }
 
 void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
                           const Cancel& replaced) noexcept {
-  if (scan == nullptr) return finish(order, Answer::kNoScan);
+  if (scan == nullptr) {
+    finish(order, Answer::kNoScan);
+    return keep(order, result_of(nullptr, Answer::kNoScan), nullptr, false);
+  }
+  times_ = {.begun_us = clock_.now_us()};
   const job::ScanResult found = search_.run(order, *scan, {clock_, *workers_, &replaced});
   job::ScanResult result = result_of(scan, found.answer);
   result.frame = found.frame;
@@ -164,7 +170,9 @@ void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
   result.alignment_hash = found.alignment_hash;
   result.match_count = found.match_count;
   result.matches = found.matches;
+  times_.ended_us = clock_.now_us();
   finish(order, result);
+  keep(order, result, scan, true);
 }
 
 // The scan of this trigger; null when it could not be read or nobody wants it any more.
@@ -190,6 +198,84 @@ const HeldScan* SearchEngine::next_scan(const job::Order& order, const Cancel& r
   said_ = {Kind::kScanned, order.ticket, {}};
   say_for_certain();
   return scan;
+}
+
+// --- what is kept, after the bus was told
+
+void SearchEngine::keep(const job::Order& order, const job::ScanResult& result,
+                        const HeldScan* scan, bool was_searched) noexcept {
+  if (!recorder_) return;
+  port::Record* const record = recorder_->free_record();
+  if (record == nullptr) return recorder_->drop();
+  try {
+    record->result = result;
+    record->times = was_searched ? times_ : port::RecordTimes{};
+    record->times.said_us = clock_.now_us();
+    record->trace.clear();
+    if (was_searched) record->trace.take(search_.trace());
+    fill(*record, order, scan);
+    record->times.copied_us = clock_.now_us();
+    recorder_->commit(Recorder::Task::kRecord);
+  } catch (const std::exception&) {  // no memory: a record is not worth more
+    recorder_->drop();
+  }
+}
+
+void SearchEngine::fill(port::Record& record, const job::Order& order, const HeldScan* scan) {
+  record.order = order;
+  record.since_1970_us = std::chrono::duration_cast<std::chrono::microseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+  record.arena_bytes = arena_.span().size();
+  tool::LoadedScan& loaded = record.loaded;
+  loaded.scan.width_px = loaded.scan.height_px = 0;
+  loaded.path.clear();
+  loaded.frames = record.trace.frames;
+  loaded.frame = record.trace.face;
+  if (scan == nullptr) return;
+  loaded.path = scan->name;
+  loaded.load_us = scan->load_us;
+  loaded.scan.up = scan->up;
+  loaded.scan.up_reason = scan->up_reason;
+  if (record.trace.part_count == 0) loaded.frames = frames_of_scan(scan->up == port::Up::kPlusZ);
+  copy_scan(scan->view, loaded.scan);
+}
+
+// Who asked for this waits for the disk, and may cancel; the bus goes on, and the search is asked
+// for signs of life.
+Answer SearchEngine::save_scan(const job::Order& order, const Cancel& replaced) noexcept {
+  const HeldScan* const scan = source_ ? source_->last() : nullptr;
+  if (!recorder_ || scan == nullptr) return Answer::kNotSaved;
+  bool is_committed = false;
+  while (!replaced.is_asked_for()) {
+    const std::uint32_t seen = bell_.seen();
+    answer_asker();
+    if (is_committed) {
+      if (const auto saved = recorder_->saved()) return *saved ? Answer::kOk : Answer::kNotSaved;
+    } else if (port::Record* const record = recorder_->free_record()) {
+      try {
+        record->result = result_of(scan, Answer::kOk);
+        record->times = {};
+        record->trace.clear();
+        fill(*record, order, scan);
+      } catch (const std::exception&) {
+        return Answer::kNotSaved;
+      }
+      recorder_->commit(Recorder::Task::kSave);
+      is_committed = true;
+    }
+    bell_.wait(seen);
+  }
+  return Answer::kCancelled;
+}
+
+void SearchEngine::report_pick(const job::Order& order) noexcept {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  const port::Pick pick{order.pick_number, order.pick_outcome,
+                        std::chrono::duration_cast<std::chrono::microseconds>(since_1970).count()};
+  if (recorder_ && recorder_->report(pick)) return;
+  note("pick of command " + std::to_string(order.pick_number) + ": outcome " +
+       std::to_string(order.pick_outcome));
 }
 
 void SearchEngine::finish(const job::Order& order, Answer answer) noexcept {

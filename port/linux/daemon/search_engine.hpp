@@ -24,6 +24,7 @@
 #include "port/linux/daemon/job_set.hpp"
 #include "port/linux/daemon/log.hpp"
 #include "port/linux/daemon/mailbox.hpp"
+#include "port/linux/daemon/recorder.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
 #include "port/linux/daemon/scan_source.hpp"
 #include "port/linux/modbus/file_descriptor.hpp"
@@ -62,6 +63,10 @@ class SearchEngine {
   void give(const job::Order& order) noexcept;
   /// The bus's thread: what search and source have to say.  Cost: no wait.
   [[nodiscard]] bool take(job::SearchEvent& event) noexcept;
+  /// The bus's thread: a result is on its board, for the records.
+  void note_posted(std::uint32_t ticket, std::int64_t now_us) noexcept {
+    if (recorder_) recorder_->note_posted(ticket, now_us);
+  }
   /// An eventfd that is readable when there is something to take.
   [[nodiscard]] int event() const noexcept { return event_.get(); }
 
@@ -89,6 +94,11 @@ class SearchEngine {
   [[nodiscard]] const HeldScan* next_scan(const job::Order& order, const Cancel& replaced) noexcept;
   void finish(const job::Order& order, const job::ScanResult& result) noexcept;
   void finish(const job::Order& order, job::Answer answer) noexcept;
+  void keep(const job::Order& order, const job::ScanResult& result, const HeldScan* scan,
+            bool was_searched) noexcept;
+  void fill(port::Record& record, const job::Order& order, const HeldScan* scan);
+  [[nodiscard]] job::Answer save_scan(const job::Order& order, const Cancel& replaced) noexcept;
+  void report_pick(const job::Order& order) noexcept;
   void say_for_certain() noexcept;
   void answer_asker() noexcept;
   void wake_bus() const noexcept;
@@ -107,6 +117,8 @@ class SearchEngine {
   Queue<job::SearchEvent, 8> events_;
   job::SearchEvent said_;  ///< The search thread's: an event is some kilobytes.
   std::unique_ptr<ScanSource> source_;
+  std::unique_ptr<Recorder> recorder_;
+  port::RecordTimes times_;
   std::unique_ptr<port::WorkerPool> workers_;
   port::Steps steps_;
   std::exception_ptr failure_;         ///< Of the thread's start.

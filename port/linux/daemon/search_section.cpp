@@ -15,6 +15,10 @@ constexpr Range kScanBytes{1 << 20, std::int64_t{16} << 30};
 
 /// Program, libraries, stacks and what else is in a process.
 constexpr std::int64_t kRest_bytes = 64 << 20;
+/// Records in memory: one to be filled, and the one before, to be drawn.
+constexpr int kRecordCount = 2;
+/// Drawing it.
+constexpr std::int64_t kPicture_bytes = 96 << 20;
 
 int small(std::optional<std::int64_t> given, int usual) {
   return static_cast<int>(given.value_or(usual));
@@ -35,13 +39,17 @@ void read_search(Section section, Config& config) {
   section.finish();
 }
 
-std::int64_t held_bytes(const SearchConfig& search) {
-  return static_cast<std::int64_t>(locate::Locator::required_bytes(search.limits)) +
-         kScanBufferCount * static_cast<std::int64_t>(scan_buffer_bytes(search.limits));
+std::int64_t held_bytes(const Config& config) {
+  const locate::Limits& limits = config.search.limits;
+  const int scan_count = kScanBufferCount + (config.records.folder.empty() ? 0 : kRecordCount);
+  return static_cast<std::int64_t>(locate::Locator::required_bytes(limits)) +
+         scan_count * static_cast<std::int64_t>(scan_buffer_bytes(limits));
 }
 
-std::int64_t taken_bytes_max(const SearchConfig& search) {
-  return held_bytes(search) + search.max_scan_bytes + kRest_bytes;
+std::int64_t taken_bytes_max(const Config& config) {
+  const auto scan_bytes = static_cast<std::int64_t>(scan_buffer_bytes(config.search.limits));
+  const std::int64_t record_bytes = config.records.folder.empty() ? 0 : scan_bytes + kPicture_bytes;
+  return held_bytes(config) + config.search.max_scan_bytes + record_bytes + kRest_bytes;
 }
 
 std::string threads_text(const SearchConfig& search) {

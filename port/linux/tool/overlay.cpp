@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <span>
 
@@ -243,6 +244,24 @@ Sheet lay_out(const Relief& relief) {
   return sheet;
 }
 
+// All contours first, that none covers an axis or a label.
+void draw_marks(Canvas& canvas, const Sheet& sheet, const Overlay& overlay,
+                const model::Template& part, const Pose& work_T_face) {
+  std::map<const model::Template*, Artist> artists;
+  const auto artist_of = [&](const Mark& mark) -> Artist& {
+    const model::Template& own = mark.part == nullptr ? part : *mark.part;
+    return artists.try_emplace(&own, canvas, sheet, own).first->second;
+  };
+  for (const Mark& mark : overlay.marks) {
+    if (overlay.shows_template) artist_of(mark).surface(work_T_face * mark.face_T_object);
+    artist_of(mark).contour(work_T_face * mark.face_T_object);
+  }
+  for (const Mark& mark : overlay.marks) artist_of(mark).axes(work_T_face * mark.face_T_object);
+  for (const Mark& mark : overlay.marks)
+    artist_of(mark).label(work_T_face * mark.face_T_object,
+                          port::printable(mark.label, kTitleBytesMax));
+}
+
 }  // namespace
 
 std::vector<std::byte> draw_overlay(const Overlay& overlay, const model::Template& part,
@@ -264,15 +283,7 @@ std::vector<std::byte> draw_overlay(const Overlay& overlay, const model::Templat
   } else {
     canvas.picture(relief.xrgb, relief.grid.width_px, relief.grid.height_px, sheet.left, sheet.top,
                    sheet.width, sheet.height);
-    Artist artist(canvas, sheet, part);
-    const Pose work_T_face = loaded.frames.work_T_face();
-    for (const Mark& mark : overlay.marks) {
-      if (overlay.shows_template) artist.surface(work_T_face * mark.face_T_object);
-      artist.contour(work_T_face * mark.face_T_object);
-    }
-    for (const Mark& mark : overlay.marks) artist.axes(work_T_face * mark.face_T_object);
-    for (const Mark& mark : overlay.marks)
-      artist.label(work_T_face * mark.face_T_object, port::printable(mark.label, kTitleBytesMax));
+    draw_marks(canvas, sheet, overlay, part, loaded.frames.work_T_face());
   }
   // cairo refuses text that is no UTF-8.
   draw_legend(canvas, sheet.px_per_mm(), relief, port::printable(overlay.title, kTitleBytesMax),

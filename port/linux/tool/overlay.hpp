@@ -15,6 +15,7 @@ namespace flatpose::tool {
 struct Mark {
   Pose face_T_object;
   std::string label;
+  const model::Template* part = nullptr;  ///< Null: the overlay's.
 };
 
 struct Overlay {

@@ -116,6 +116,34 @@ TEST(Config, ThatCannotBeReadSaysSo) {
   port::expect_input_error([&] { (void)load_config(big); }, {"big.toml"});
 }
 
+TEST(Config, HoldsRecords) {
+  const Config config = parse_config(
+      kPath,
+      "[records]\nfolder = \"r\"\nlast = 5\nfailed = 0\nsaved = 7\nmax_mb = 3\npicture = false\n");
+  EXPECT_EQ(config.records.folder, "dir/r");
+  EXPECT_EQ(config.records.limits.last_count, 5);
+  EXPECT_EQ(config.records.limits.failed_count, 0);
+  EXPECT_EQ(config.records.limits.saved_count, 7);
+  EXPECT_EQ(config.records.limits.bytes_max, 3 << 20);
+  EXPECT_FALSE(config.records.draws);
+  EXPECT_TRUE(parse_config(kPath, "").records.folder.empty());
+  expect_refused("[records]\nlast = 5\n", {"dir/f.toml:1: ", "folder"});
+  expect_refused("[records]\nfolder = \"r\"\nmax_mb = 0\n", {"dir/f.toml:3: "});
+}
+
+TEST(Config, StartsAreCountedAsSaidElseByTheUnitElseBesideTheRecords) {
+  RecordsConfig records;
+  EXPECT_EQ(state_file_of(records, nullptr), "");
+  EXPECT_EQ(state_file_of(records, "/var/lib/flatpose:/var/lib/other"),
+            "/var/lib/flatpose/state.json");
+  records.folder = "/r";
+  EXPECT_EQ(state_file_of(records, nullptr), "/r/state.json");
+  EXPECT_EQ(state_file_of(records, ""), "/r/state.json");
+  EXPECT_EQ(state_file_of(records, "/var/lib/flatpose"), "/var/lib/flatpose/state.json");
+  records.state_file = "/s.json";
+  EXPECT_EQ(state_file_of(records, "/var/lib/flatpose"), "/s.json");
+}
+
 TEST(Config, HoldsBusSourceAndJobs) {
   const Config config = parse_config(
       kPath,
@@ -251,7 +279,7 @@ TEST(Config, OfTheExampleIsTheUsualOne) {
   const Config example = load_config(FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml");
   const Config usual = parse_config(kPath, "");
   EXPECT_EQ(example.search.thread_count, usual.search.thread_count);
-  EXPECT_EQ(held_bytes(example.search), held_bytes(usual.search));
+  EXPECT_EQ(held_bytes(example), held_bytes(usual));
   EXPECT_EQ(example.search.max_scan_bytes, usual.search.max_scan_bytes);
   EXPECT_TRUE(example.realtime.cpus.empty());
 }

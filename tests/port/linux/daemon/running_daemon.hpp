@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "flatpose/job/order.hpp"
 #include "flatpose/job/snapshot.hpp"
 #include "flatpose/result_map/table.hpp"
 
@@ -68,6 +69,7 @@ class RunningDaemon {
   RunningDaemon& operator=(const RunningDaemon&) = delete;
 
   [[nodiscard]] int port() const { return port_; }
+  [[nodiscard]] pid_t pid() const { return pid_; }
   /// Its exit code; -1 when the signal killed it.
   int stop(int signal) {
     if (pid_ <= 0) return -1;
