@@ -17,6 +17,29 @@ namespace {
 // Below this share of valid points a scan says nothing about what is there.
 constexpr double kValidShareMin = 0.02;
 
+// What of the work frame a box of the face's x and y may cover at the heights of the scan: the box
+// stands along the face's z, which need not be the work's.
+rectify::Region region_in_work(const Box& box, const Pose& work_T_face,
+                               const rectify::Survey& survey, double margin_mm) noexcept {
+  constexpr double kUprightMin = 0.1;
+  const Vec3 along = work_T_face.rotation.column(2);
+  rectify::Region all;
+  if (survey.valid_count == 0 || !(std::fabs(along.z) > kUprightMin)) return all;
+  Vec3 low{1e300, 1e300, 0.0};
+  Vec3 high{-1e300, -1e300, 0.0};
+  for (const double x_mm : {box.x0_mm, box.x1_mm}) {
+    for (const double y_mm : {box.y0_mm, box.y1_mm}) {
+      const Vec3 corner = work_T_face * Vec3{x_mm, y_mm, 0.0};
+      for (const double z_mm : {survey.min_mm.z - margin_mm, survey.max_mm.z + margin_mm}) {
+        const Vec3 p = corner + ((z_mm - corner.z) / along.z) * along;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), 0.0};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), 0.0};
+      }
+    }
+  }
+  return {low.x - margin_mm, low.y - margin_mm, high.x + margin_mm, high.y + margin_mm};
+}
+
 /// One search from scan to result. Lives on the stack of locate().
 class Pipeline {
  public:
@@ -91,13 +114,9 @@ class Pipeline {
     grid_config.cell_mm = cell_mm;
     grid_config.cells_max = limits_.cell_count;
     if (config_.region.kind != Region::Kind::kAll) {
-      const Box box = bounding_box(config_.region);
-      const Vec3 a = frames_.work_T_face() * Vec3{box.x0_mm, box.y0_mm, 0.0};
-      const Vec3 b = frames_.work_T_face() * Vec3{box.x1_mm, box.y1_mm, 0.0};
       // The region bounds the origin; the part may reach beyond it, but not beyond the scan.
-      const double margin_mm = 2.0 * part_.radius_mm;
-      grid_config.region = {std::min(a.x, b.x) - margin_mm, std::min(a.y, b.y) - margin_mm,
-                            std::max(a.x, b.x) + margin_mm, std::max(a.y, b.y) + margin_mm};
+      grid_config.region = region_in_work(bounding_box(config_.region), frames_.work_T_face(),
+                                          survey, 2.0 * part_.radius_mm);
     }
     const Result<rectify::Grid> grid = rectify::choose_grid(survey, grid_config);
     if (grid && (grid->width_px > kMapSideMax_px || grid->height_px > kMapSideMax_px))

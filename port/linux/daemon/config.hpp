@@ -76,7 +76,8 @@ struct JobConfig {
   job::JobRule rule;
   std::vector<int> parts;       ///< Indices into Config::parts, searched in the same scan.
   locate::LocateConfig locate;  ///< Its deadline is the job's.
-  std::string work_file;        ///< Of frame "work".
+  std::string work_file;        ///< Of frame "work"; with others it says where up is.
+  std::string robot_file;       ///< Of frame "robot".
   ReportRule report;
 };
 

@@ -89,7 +89,8 @@ void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
   }
 }
 
-void warn(const Config& config, Log& log) {
+void warn(const Config& config, const JobSet& jobs, Log& log) {
+  for (const std::string& line : jobs.problems()) log.line("warning: " + line);
   if (!config.modbus.is_on) log.line("warning: no [modbus]: nobody can ask for anything");
   if (!config.source.is_any()) log.line("warning: no [source]: there are no scans");
   if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");
@@ -119,7 +120,7 @@ void run_service(const Options& options, const Config& config, std::ostream& err
   engine.start();
   log(events, engine.steps());
   if (bus) bus->start();
-  warn(config, events);
+  warn(config, jobs, events);
   const std::string state = threads_text(config.search) + ", " +
                             std::to_string(held_bytes(config) >> 20) + " MB" +
                             (bus ? "; Modbus TCP on " + bus->name() : std::string());
@@ -156,8 +157,10 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
   }
   const Config config = config_of(options);
   if (options.only_checks) {
-    (void)load_jobs(config);
-    out << check_report(options.config_path, config, root) << std::flush;
+    const JobSet jobs = load_jobs(config);
+    out << check_report(options.config_path, config, root);
+    for (const std::string& line : jobs.problems()) out << "\nwarning: " << line << '\n';
+    out << std::flush;
     if (!out) return say(err, "stdout: cannot write it; check where it goes", ExitCode::kInput);
   } else {
     run_service(options, config, err, root);

@@ -53,12 +53,15 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
     return result_;
   }
   result_.frame = job_->config.rule.frame;
-  result_.alignment_hash = job_->alignment_hash;
-  const bool is_aligned = result_.frame == job::FrameName::kWork;
-  frames_ = is_aligned ? job_->work : frames_of_scan(scan.up == port::Up::kPlusZ);
   trace_.clear();
+  result_.alignment_hash = job_->alignment.hash;
+  if (!job_->alignment.serves(result_.frame)) {
+    result_.answer = Answer::kNoAlignment;
+    return result_;
+  }
+  frames_ = job_->alignment.frames(result_.frame, scan.up);
   trace_.frames = frames_;
-  trace_.face = is_aligned ? model::Frame::kWork : model::Frame::kScan;
+  trace_.face = result_.frame == job::FrameName::kWork ? model::Frame::kWork : model::Frame::kScan;
   int index = 0;
   for (const int part : job_->config.parts) search_part(part, ++index, order, scan, host);
   if (result_.match_count == 0 && job::may_have_pose(result_.answer))

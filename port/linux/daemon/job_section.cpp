@@ -24,7 +24,7 @@ constexpr double kReachMax_mm = 1.0e6;
 constexpr std::int64_t kUsPerMs = 1000;
 
 // In the order of the enumerations.
-const std::vector<std::string> kFrames{"scan", "work"};
+const std::vector<std::string> kFrames{"scan", "work", "robot"};
 const std::vector<std::string> kOrders{"score", "height", "visible"};
 const std::vector<std::string> kPoses{"object", "pick"};
 
@@ -106,11 +106,15 @@ void read_job(Section section, Config& config) {
   read_search_of(section, job);
   read_report(section, config, job);
   job.work_file = section.file("work").value_or("");
+  job.robot_file = section.file("alignment").value_or("");
   const bool needs_work = job.rule.frame == job::FrameName::kWork;
   section.finish();
   if (needs_work && job.work_file.empty())
     section.fail("frame", "frame \"work\" needs the work plane",
                  "write work = \"WORK.json\", as flatpose align wrote it");
+  if (!job.robot_file.empty() && job.rule.frame != job::FrameName::kRobot)
+    section.fail("alignment", "'alignment' is of frame \"robot\" alone",
+                 "write frame = \"robot\", or take it out");
   for (const JobConfig& other : config.jobs)
     if (other.rule.job == job.rule.job)
       section.fail("number", "there are two jobs of this number", "give each its own");

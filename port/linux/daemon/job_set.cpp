@@ -1,26 +1,18 @@
 #include "port/linux/daemon/job_set.hpp"
 
-#include "flatpose/core/fnv.hpp"
 #include "flatpose/model/template_file.hpp"
-#include "port/linux/daemon/section.hpp"
+#include "port/linux/daemon/file_hash.hpp"
 #include "port/linux/files/atomic_file.hpp"
 #include "port/linux/files/input_error.hpp"
-#include "port/linux/files/work_file.hpp"
 
 namespace flatpose::daemon {
 namespace {
 
-// Never 0, which says that there is none.
-std::uint32_t hash_of(std::span<const std::byte> bytes) noexcept {
-  Fnv1a64 hash;
-  hash.add(bytes);
-  const auto folded = static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32);
-  return folded == 0 ? 1 : folded;
-}
-
 Part load_part(const PartConfig& config) {
   const auto bytes = port::read_file(config.file, model::kTemplateFileBytesMax);
-  Part part{std::make_shared<model::Template>(), hash_of(bytes), config.picks};
+  FileHash hash;
+  hash.add(bytes);
+  Part part{std::make_shared<model::Template>(), hash.value(), config.picks};
   if (part.picks.empty()) part.picks.push_back(usual_pick());
   const Status status = model::read_template(bytes, *part.model);
   if (status != Status::kOk)
@@ -31,15 +23,8 @@ Part load_part(const PartConfig& config) {
 }
 
 Job load_job(const JobConfig& config, const SourceConfig& source) {
-  Job job{config, {}, 0};
-  if (config.rule.frame != job::FrameName::kWork) return job;
-  const port::WorkFile work = port::read_work_file(config.work_file);
-  if (source.up && *source.up != work.up)
-    throw port::InputError(source.place, "'up' contradicts " + config.work_file,
-                           "leave it out, or align again with it");
-  job.work = frames_of_work(work.work_T_scan);
-  job.alignment_hash = hash_of(port::read_file(config.work_file, kConfigBytesMax));
-  return job;
+  return {config,
+          load_alignment(config.work_file, config.robot_file, config.rule.frame, source.up)};
 }
 
 }  // namespace
@@ -56,6 +41,16 @@ job::JobTable JobSet::rules() const {
   for (const Job& job : jobs)
     table.rules[static_cast<std::size_t>(table.count++)] = job.config.rule;
   return table;
+}
+
+std::vector<std::string> JobSet::problems() const {
+  std::vector<std::string> lines;
+  for (const Job& job : jobs) {
+    if (!job.alignment.problem.empty())
+      lines.push_back("job " + std::to_string(job.config.rule.job) +
+                      " has no alignment: " + job.alignment.problem);
+  }
+  return lines;
 }
 
 JobSet load_jobs(const Config& config) {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "flatpose/geometry/frames.hpp"
 #include "flatpose/model/template.hpp"
+#include "port/linux/daemon/alignment.hpp"
 #include "port/linux/daemon/config.hpp"
 
 namespace flatpose::daemon {
@@ -20,8 +20,7 @@ struct Part {
 
 struct Job {
   JobConfig config;
-  Frames work;  ///< With frame "work".
-  std::uint32_t alignment_hash = 0;
+  Alignment alignment;
 };
 
 struct JobSet {
@@ -30,9 +29,12 @@ struct JobSet {
 
   [[nodiscard]] const Job* find(std::uint16_t number) const noexcept;
   [[nodiscard]] job::JobTable rules() const;
+  /// A line for each job whose alignment is not what it needs.
+  [[nodiscard]] std::vector<std::string> problems() const;
 };
 
-/// Reads all that the jobs need.  Fails: port::InputError.
+/// Reads all that the jobs need.  Fails: port::InputError; an alignment that cannot be read is no
+/// failure: its jobs say so when they are asked for.
 [[nodiscard]] JobSet load_jobs(const Config& config);
 
 }  // namespace flatpose::daemon

@@ -5,6 +5,7 @@
 #include "port/linux/files/atomic_file.hpp"
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/files/json_text.hpp"
+#include "port/linux/files/rigid_pose.hpp"
 
 namespace flatpose::port {
 namespace {
@@ -12,31 +13,7 @@ namespace {
 constexpr const char* kFormat = "flatpose-work";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::int64_t kFileBytesMax = 1024 * 1024;
-constexpr double kRotationTolerance = 1e-6;
 constexpr const char* kAlignAgain = "write it again with flatpose align";
-
-bool is_rotation(const Rotation& r) {
-  const Rotation product = r * r.inverse();
-  for (std::size_t i = 0; i < 9; ++i)
-    if (!(std::fabs(product.m[i] - (i % 4 == 0 ? 1.0 : 0.0)) <= kRotationTolerance)) return false;
-  return dot(cross(r.column(0), r.column(1)), r.column(2)) > 0.0;  // a mirror has -1
-}
-
-Pose read_pose(const JsonPlace& place) {
-  Pose pose;
-  const JsonPlace position = place["position_mm"];
-  double* position_mm[] = {&pose.position_mm.x, &pose.position_mm.y, &pose.position_mm.z};
-  for (std::size_t i = 0; i < 3; ++i) {
-    *position_mm[i] = position.element(i, 3).number();
-    if (std::fabs(*position_mm[i]) > kCoordinateMax_mm)
-      position.element(i, 3).fail("lies beyond +-1e6 mm", kAlignAgain);
-  }
-  const JsonPlace rotation = place["rotation"];
-  for (std::size_t i = 0; i < 9; ++i) pose.rotation.m[i] = rotation.element(i, 9).number();
-  if (!is_rotation(pose.rotation))
-    rotation.fail("is no rotation (orthonormal, determinant +1)", kAlignAgain);
-  return pose;
-}
 
 WorkQuality read_quality(const JsonPlace& place) {
   WorkQuality quality;
@@ -62,7 +39,7 @@ WorkFile read_work_file(const std::string& path) {
     top["version"].fail(std::to_string(version) + " is not the known " + std::to_string(kVersion),
                         version > kVersion ? "use a newer flatpose" : kAlignAgain);
   WorkFile work;
-  work.work_T_scan = read_pose(top["work_T_scan"]);
+  work.work_T_scan = read_pose(top["work_T_scan"], kAlignAgain);
   const std::optional<Up> up = parse_up(top["up"].text());
   if (!up) top["up"].fail("is neither \"+z\" nor \"-z\"", kAlignAgain);
   work.up = *up;
@@ -84,8 +61,7 @@ void write_work_file(const std::string& path, const WorkFile& work) {
   json["format"] = kFormat;
   json["version"] = kVersion;
   json["up"] = to_string(work.up);
-  json["work_T_scan"]["position_mm"] = {p_mm.x, p_mm.y, p_mm.z};
-  json["work_T_scan"]["rotation"] = work.work_T_scan.rotation.m;
+  json["work_T_scan"] = pose_object(work.work_T_scan);
   if (work.quality)
     json["quality"] = {{"plane_rms_mm", work.quality->plane_rms_mm},
                        {"inlier_share", work.quality->inlier_share},

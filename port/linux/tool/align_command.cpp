@@ -1,10 +1,11 @@
-// flatpose align SCAN -o WORK.json
+// flatpose align: SCAN -o WORK.json, or --touch PAIRS.csv -o ROBOT.json
 
 #include <array>
 #include <memory>
 
 #include "flatpose/core/maths.hpp"
 #include "port/linux/files/work_file.hpp"
+#include "port/linux/tool/align_options.hpp"
 #include "port/linux/tool/command.hpp"
 #include "port/linux/tool/loaded_scan.hpp"
 #include "port/linux/tool/options.hpp"
@@ -15,17 +16,13 @@
 namespace flatpose::tool {
 namespace {
 
-struct Options {
-  std::string scan_path;
-  std::string work_path;
-  ScanOptions reading;
-};
-
 // Less than this on the plane, and it may be no more than one part's top.
 constexpr double kShareThin = 0.15;
 
-ExitCode run(const Options& options, Report& report) {
-  check_outputs(std::array{options.scan_path}, std::array{options.work_path});
+}  // namespace
+
+ExitCode align_plane(const AlignOptions& options, Report& report) {
+  check_outputs(std::array{options.scan_path}, std::array{options.output_path});
   const LoadedScan loaded = load_scan(options.scan_path, options.reading);
   require_points(loaded);
   const rectify::Survey survey = survey_of(loaded);
@@ -40,7 +37,7 @@ ExitCode run(const Options& options, Report& report) {
   work.work_T_scan = plane->work_T_scan;
   work.up = loaded.scan.up;
   work.quality = port::WorkQuality{plane->rms_mm, plane->inlier_share, plane->inlier_count};
-  port::write_work_file(options.work_path, work);
+  port::write_work_file(options.output_path, work);
   if (plane->inlier_share < kShareThin)
     report.warnings.push_back(
         formatted("only %.0f %% of the points lie on the work plane: align with it empty",
@@ -55,15 +52,39 @@ ExitCode run(const Options& options, Report& report) {
   return ExitCode::kDone;
 }
 
+namespace {
+
+[[noreturn]] void refuse(const char* option, const char* why, const char* remedy) {
+  throw port::InputError(option, why, remedy);
+}
+
+ExitCode run(const AlignOptions& options, Report& report) {
+  const bool by_touch = !options.touch_path.empty();
+  if (by_touch && !options.scan_path.empty())
+    refuse("--touch", "it needs no SCAN", "leave the scan out: the pairs say where its points are");
+  if (!by_touch && options.scan_path.empty())
+    refuse("align", "there is neither SCAN nor --touch", "name the scan of the work plane");
+  if (options.output_path.empty())
+    refuse("--output", "it is not given", "say where the alignment goes: -o FILE.json");
+  if (!by_touch && !options.reading.work_path.empty())
+    refuse("--work", "it goes with --touch alone", "leave it out");
+  return by_touch ? align_touch(options, report) : align_plane(options, report);
+}
+
 }  // namespace
 
 Action add_align(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  app.add_option("SCAN", options->scan_path, "a scan that shows the work plane")->required();
-  app.add_option("-o,--output", options->work_path, "the work plane")
-      ->type_name("WORK.json")
-      ->required();
-  add_reading(app, options->reading);
+  auto options = std::make_shared<AlignOptions>();
+  app.add_option("SCAN", options->scan_path, "a scan that shows the work plane");
+  app.add_option("-o,--output", options->output_path, "the work plane, or the robot's frame")
+      ->type_name("FILE.json");
+  add_text(app, "--touch", "PAIRS.csv",
+           "points touched by the robot: scan_x,scan_y,scan_z,robot_x,robot_y,robot_z in mm, four "
+           "lines at least; gives the robot's frame",
+           [options](const std::string& text) { options->touch_path = text; });
+  add_number(app, "--max-rms", "MM", "with --touch: what the pairs may be off by; default 3",
+             options->rms_max_mm, 1e-6, 1e3);
+  add_reading_and_work(app, options->reading);
   return [options](Report& report) { return run(*options, report); };
 }
 

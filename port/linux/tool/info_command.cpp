@@ -4,6 +4,7 @@
 
 #include "flatpose/core/maths.hpp"
 #include "port/linux/files/atomic_file.hpp"
+#include "port/linux/files/robot_file.hpp"
 #include "port/linux/files/sick_json.hpp"
 #include "port/linux/files/work_file.hpp"
 #include "port/linux/tool/command.hpp"
@@ -22,17 +23,18 @@ struct Options {
   bool json = false;
 };
 
-enum class Kind { kTemplate, kWork, kScan };
+enum class Kind { kTemplate, kWork, kRobot, kScan };
 
-// Both are JSON; only a work file says so of itself.
+// Scans may be JSON too; only alignments say so of themselves.
 Kind kind_of(const Options& options) {
   const std::vector<std::byte> bytes =
       port::read_file(options.path, options.reading.limits.max_file_bytes);
   if (is_template(bytes)) return Kind::kTemplate;
-  constexpr std::size_t kWorkBytesMax = 1024 * 1024;
-  const bool is_work = bytes.size() <= kWorkBytesMax && port::is_json(bytes) &&
-                       port::as_text(bytes).find("\"flatpose-work\"") != std::string_view::npos;
-  return is_work ? Kind::kWork : Kind::kScan;
+  constexpr std::size_t kAlignmentBytesMax = 16 * 1024 * 1024;
+  if (bytes.size() > kAlignmentBytesMax || !port::is_json(bytes)) return Kind::kScan;
+  const std::string_view text = port::as_text(bytes);
+  if (text.find("\"flatpose-work\"") != std::string_view::npos) return Kind::kWork;
+  return text.find("\"flatpose-robot\"") != std::string_view::npos ? Kind::kRobot : Kind::kScan;
 }
 
 std::string symmetry_text(const model::Template& part) {
@@ -98,6 +100,28 @@ void tell_work(const Options& options, Report& report) {
                              100.0 * work.quality->inlier_share);
 }
 
+void tell_robot(const Options& options, Report& report) {
+  const port::RobotFile robot = port::read_robot_file(options.path);
+  if (options.json) {
+    Json json;
+    json["kind"] = "robot";
+    add_pose(json["robot_T_scan"], robot.robot_T_scan);
+    if (robot.quality) {
+      json["quality"] = {{"rms_mm", robot.quality->rms_mm},
+                         {"worst_mm", robot.quality->worst_mm},
+                         {"leave_one_out_mm", robot.quality->leave_one_out_mm}};
+    }
+    report.text = line_of(json);
+    return;
+  }
+  const Vec3& p = robot.robot_T_scan.position_mm;
+  report.text = formatted("%s: robot frame, the scan's origin at %.3f %.3f %.3f mm of the robot\n",
+                          options.path.c_str(), p.x, p.y, p.z);
+  if (robot.quality)
+    report.text += formatted("  %.4f mm rms, worst %.4f, left out %.4f\n", robot.quality->rms_mm,
+                             robot.quality->worst_mm, robot.quality->leave_one_out_mm);
+}
+
 /// The bounding box in the scan's own frame: the survey's stands in the flipped one.
 struct Box3 {
   Vec3 min_mm;
@@ -160,6 +184,7 @@ ExitCode run(const Options& options, Report& report) {
   switch (kind_of(options)) {
     case Kind::kTemplate: tell_template(options, report); break;
     case Kind::kWork: tell_work(options, report); break;
+    case Kind::kRobot: tell_robot(options, report); break;
     case Kind::kScan: tell_scan(options, report); break;
   }
   return ExitCode::kDone;

@@ -242,6 +242,35 @@ TEST(Locate, LooksInTheRegionOnly) {
   expect_none(locating.result);
 }
 
+// A robot's frame: turned, far away, leaning. What is found is the same, told from there, and the
+// region is a prism along its z.
+TEST(Locate, TellsPosesAndTakesRegionsInAnyFrameAtTheFace) {
+  const std::vector<Block> blocks = test::three_blocks();
+  const MadeScan scan = test::bin_scan(blocks);
+  for (const double turn_rad : {0.8, 2.4, -2.2}) {
+    for (const double lean_rad : {0.0, 0.5, 3.0}) {
+      const Pose face_T_scan{
+          rotation_about_z(turn_rad) * rotation_from_vector({lean_rad, 0.3 * lean_rad, 0.0}),
+          {900, -400, 700}};
+      const Frames frames{{}, face_T_scan};
+      for (int i = 0; i < 3; ++i) {
+        const Vec3 p = face_T_scan * blocks[i].scan_T_object.position_mm;
+        LocateConfig config;
+        config.max_matches = 5;
+        config.region = circle(p.x, p.y, 6.0);
+        Locating locating;
+        ASSERT_EQ(locating.locator.locate(test::block_part(), scan.view(), frames, config,
+                                          StoppedClock{}, locating.result),
+                  Status::kOk);
+        ASSERT_EQ(locating.result.match_count, 1) << turn_rad << " " << lean_rad << " " << i;
+        Match m = locating.result.matches[0];
+        m.face_T_object = face_T_scan.inverse() * m.face_T_object;
+        EXPECT_EQ(block_of(m, blocks), i);
+      }
+    }
+  }
+}
+
 TEST(Locate, TakesNoneThatShowsTooLittle) {
   // About a third of the part lies under something.
   const std::vector<Block> blocks{{test::pose_at(70, 60, 10, 0.2)}};

@@ -199,7 +199,8 @@ TEST(Config, RefusesJobsThatCannotBeRun) {
   const std::string job = part + "[[job]]\nparts = [\"a\"]\n";
   expect_refused(job + "number = 0\n", {"dir/f.toml:6: "});
   expect_refused(job + "frame = \"work\"\n", {"dir/f.toml:6: ", "flatpose align"});
-  expect_refused(job + "frame = \"robot\"\n", {"dir/f.toml:6: ", "scan, work"});
+  expect_refused(job + "frame = \"robt\"\n", {"dir/f.toml:6: ", "scan, work, robot"});
+  expect_refused(job + "alignment = \"r.json\"\n", {"dir/f.toml:6: ", "frame = \"robot\""});
   expect_refused(job + "region = \"circle:1\"\n", {"dir/f.toml:6: region", "circle:X,Y,R"});
   expect_refused(job + "limit_z_mm = [2, 1]\n", {"dir/f.toml:6: ", "runs backwards"});
   expect_refused(job + "limit_z_mm = [2]\n", {"dir/f.toml:6: ", "give 2"});

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
+
 #include "tests/port/linux/daemon/served.hpp"
 
 namespace flatpose::daemon {
@@ -123,6 +126,81 @@ TEST_F(JobsServed, ReferenceRotationChoosesTheBranch) {
   EXPECT_NEAR(apart, std::round(apart), 1e-5);
   EXPECT_NEAR(turns(near[Field::kRotation1]), 1.0, 0.5);
   EXPECT_LT(std::fabs(turns(plain[Field::kRotation1])), 0.5 + 1e-6);
+}
+
+/// As the tool writes them.
+std::string robot_json(const Rows& robot_T_scan) {
+  std::string text =
+      "{\"format\":\"flatpose-robot\",\"version\":1,\"robot_T_scan\":"
+      "{\"position_mm\":[";
+  for (int i = 0; i < 3; ++i) text += (i ? "," : "") + std::to_string(robot_T_scan.m[i][3]);
+  text += "],\"rotation\":[";
+  char number[40];
+  for (int i = 0; i < 9; ++i) {
+    std::snprintf(number, sizeof number, "%s%.17g", i ? "," : "", robot_T_scan.m[i / 3][i % 3]);
+    text += number;
+  }
+  return text + "]}}";
+}
+
+const Rows kRobotTScan =
+    Rows::at(850, -200, 1200) * Rows::about(2, 35) * Rows::about(1, 4) * Rows::about(0, 176);
+
+TEST_F(JobsServed, RobotFrameIsTheAlignmentsTimesTheJsonsPose) {
+  folder_.write("robot.json", robot_json(kRobotTScan));
+  const std::string config = dry_run("frame = \"robot\"\nalignment = \"robot.json\"",
+                                     "[[job]]\nnumber = 2\nparts = [\"pad\"]\nframe = "
+                                     "\"robot\"\nalignment = \"robot.json\"\npose = "
+                                     "\"object\"\n[[job]]\nnumber = 3\nparts = [\"pad\"]\n");
+  const auto own =
+      located(folder_.write("plain.toml",
+                            "[search]\nscan_width_px = 400\n"
+                            "scan_height_px = 333\ncell_count = "
+                            "600_000\n[[part]]\nname = \"pad\"\nfile = "
+                            "\"" FLATPOSE_EXAMPLE "/pad.fpt\"\n[[job]]\nparts = [\"pad\"]\n"),
+              kScan);
+  RunningDaemon daemon({"--config", config});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  const Rows robot_T_object = kRobotTScan * Rows::of(own->matches[0].face_T_object);
+  // A robot is told where its tool goes: z into the surface.
+  const Plc::Block pick = plc.trigger(1, 0, 1, 1);
+  EXPECT_EQ(pick[Field::kFrame], static_cast<int>(job::FrameName::kRobot));
+  EXPECT_EQ(pick[Field::kTool], 1);
+  EXPECT_TRUE(pick.has(job::kValid));
+  expect_at(pick, robot_T_object * Rows::about(0, 180));
+  EXPECT_NE(pick[Field::kAlignmentHash], 0);
+  expect_at(plc.trigger(2, 0, 1, 2), robot_T_object);
+  const Plc::Block scan = plc.trigger(3, 0, 1, 3);
+  EXPECT_EQ(scan[Field::kAlignmentHash], 0);
+  expect_at(scan, Rows::of(own->matches[0].face_T_object));
+}
+
+TEST_F(JobsServed, RobotFrameWithoutAnAlignmentHasNoPose) {
+  folder_.write("broken.json", "{");
+  const auto job = [](int number, const char* more) {
+    return "[[job]]\nnumber = " + std::to_string(number) +
+           "\nparts = [\"pad\"]\nframe = \"robot\"\n" + more;
+  };
+  folder_.write("robot.json", robot_json(kRobotTScan));
+  const std::string config =
+      dry_run({}, job(2, "") + job(3, "alignment = \"none.json\"\n") +
+                      job(4, "alignment = \"broken.json\"\n") +
+                      job(5, "alignment = \"robot.json\"\nwork = \"none.json\"\n"));
+  RunningDaemon daemon({"--config", config});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  for (std::uint16_t number = 2; number <= 5; ++number) {
+    const Plc::Block block = plc.trigger(number, 0, 1, number);
+    EXPECT_EQ(block[Field::kStatus], static_cast<int>(Answer::kNoAlignment));
+    EXPECT_FALSE(block.has(job::kValid));
+    EXPECT_EQ(block[Field::kPositionX], INT32_MIN);
+  }
+  EXPECT_EQ(plc.trigger(9)[Field::kStatus], 0);
+  daemon.stop(SIGTERM);
+  for (const char* part : {"job 2 has no alignment", "job 3 has no alignment", "none.json",
+                           "job 4 has no alignment", "broken.json", "job 5 has no alignment"})
+    EXPECT_NE(daemon.log().find(part), std::string::npos) << part << ":\n" << daemon.log();
 }
 
 }  // namespace
