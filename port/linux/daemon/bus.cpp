@@ -1,9 +1,11 @@
 #include "port/linux/daemon/bus.hpp"
 
+#include <poll.h>
 #include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace flatpose::daemon {
@@ -47,12 +49,18 @@ modbus::Settings settings_of(const ModbusConfig& config) {
 
 Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine,
          std::uint16_t boot_count)
-    : engine_(engine),
-      modbus_(machine_, executor_, settings_of(config.modbus)),
-      server_(config.modbus.place, config.modbus.bind, config.modbus.port, engine.event(),
-              config.modbus.allowed) {
+    : engine_(engine), modbus_(machine_, executor_, settings_of(config.modbus)) {
   if (machine_.init(machine_config(config, boot_count), jobs, clock_.now_us()) != Status::kOk)
     throw std::runtime_error("the job machine refuses its jobs");
+  const ModbusConfig& modbus = config.modbus;
+  if (modbus.is_on) server_.emplace(modbus.place, modbus.bind, modbus.port, -1, modbus.allowed);
+  if (config.can.is_on) can_.emplace(config.can, machine_, clock_.now_us());
+}
+
+std::string Bus::name() const {
+  std::string name = server_ ? "Modbus TCP on " + server_->name() : std::string();
+  if (can_) name += (name.empty() ? "" : "; ") + can_->name();
+  return name;
 }
 
 void Bus::start() {
@@ -73,15 +81,34 @@ void Bus::work() noexcept {
       ask_us_ = clock_.now_us() + kAskEvery_us;
       engine_.ask();
     }
-    server_.wait(next_us() - clock_.now_us());
+    wait(next_us() - clock_.now_us());
     take_events();
-    server_.serve(clock_.now_us(), *this);
+    if (server_) server_->serve(clock_.now_us(), *this);
     if (clock_.now_us() >= machine_us_) pass_on(machine_.process(clock_.now_us(), {}));
+    if (can_) pass_on(can_->station().serve(clock_.now_us()));  // last: it tells what has changed
   }
 }
 
+// The server's own set of sockets is one of what is waited for.
+void Bus::wait(std::int64_t time_us) noexcept {
+  std::array<pollfd, 3> watched{{{engine_.event(), POLLIN, 0},
+                                 {server_ ? server_->waitable() : -1, POLLIN, 0},
+                                 {can_ ? can_->socket() : -1, POLLIN, 0}}};
+  const std::int64_t left_us = std::max<std::int64_t>(time_us, 0);
+  const timespec limit{left_us / 1'000'000, left_us % 1'000'000 * 1000};
+  (void)ppoll(watched.data(), watched.size(), &limit, nullptr);
+  if (watched[0].revents != 0) {
+    std::uint64_t times = 0;
+    (void)!::read(engine_.event(), &times, sizeof times);
+  }
+  if (watched[1].revents != 0) server_->wait(0);
+}
+
 std::int64_t Bus::next_us() const noexcept {
-  return std::min({machine_us_, ask_us_, server_.deadline_us()});
+  std::int64_t next = std::min(machine_us_, ask_us_);
+  if (server_) next = std::min(next, server_->deadline_us());
+  if (can_) next = std::min(next, can_->station().next_us());
+  return next;
 }
 
 void Bus::take_events() noexcept {

@@ -1,15 +1,16 @@
 #pragma once
-// The bus's thread: the job machine, the Modbus server before it and the search behind it. It waits
-// for sockets and for the search alike, in one place, and for nothing else.
+// The bus's thread: the job machine, the Modbus server and the CAN node before it and the search
+// behind it. It waits for sockets and for the search alike, in one place, and for nothing else.
 
 #include <atomic>
-#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "flatpose/job/machine.hpp"
 #include "flatpose/modbus/server.hpp"
 #include "port/linux/clock/steady_clock.hpp"
+#include "port/linux/daemon/can_node.hpp"
 #include "port/linux/daemon/config.hpp"
 #include "port/linux/daemon/search_engine.hpp"
 #include "port/linux/modbus/executor.hpp"
@@ -19,7 +20,7 @@ namespace flatpose::daemon {
 
 class Bus final : private port::Responder {
  public:
-  /// Listens from now on. Refers to the engine, which must outlive it.
+  /// Listens from now on, on what the config names. Refers to the engine, which must outlive it.
   /// Fails: port::InputError when it cannot listen there, std::system_error.
   Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine,
       std::uint16_t boot_count);
@@ -28,8 +29,8 @@ class Bus final : private port::Responder {
   Bus& operator=(const Bus&) = delete;
 
   void start();
-  /// "127.0.0.1:502"
-  [[nodiscard]] std::string name() const { return server_.name(); }
+  /// "Modbus TCP on 127.0.0.1:502; CANopen node 10 on can0 at 250 kbit/s"
+  [[nodiscard]] std::string name() const;
   /// Counts the turns of the thread, of which there are some every second.
   [[nodiscard]] std::uint32_t turns() const noexcept { return turns_.load(); }
 
@@ -38,6 +39,7 @@ class Bus final : private port::Responder {
                       std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept override;
   [[nodiscard]] job::Address owner() const noexcept override;
   void work() noexcept;
+  void wait(std::int64_t time_us) noexcept;
   void take_events() noexcept;
   void pass_on(const job::Outputs& outputs) noexcept;
   [[nodiscard]] std::int64_t next_us() const noexcept;
@@ -47,7 +49,8 @@ class Bus final : private port::Responder {
   job::Machine machine_;
   port::LibmodbusExecutor executor_;
   modbus::Server modbus_;
-  port::TcpServer server_;
+  std::optional<port::TcpServer> server_;
+  std::optional<CanNode> can_;
   job::SearchEvent event_;
   std::int64_t machine_us_ = 0;  ///< When the machine wants to be called.
   std::int64_t ask_us_ = 0;      ///< When search and source are asked for a sign of life.

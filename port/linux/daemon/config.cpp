@@ -10,6 +10,7 @@ Config read_config(Section file) {
   read_search(file.section("search"), config);
   read_realtime(file.section("realtime"), config);
   read_modbus(file.section("modbus"), config);
+  read_can(file.section("can"), config);
   read_source(file.section("source"), config);
   read_records(file.section("records"), config);
   for (const Section& part : file.sections("part")) read_part(part, config);

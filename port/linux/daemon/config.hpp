@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "flatpose/can/config.hpp"
 #include "flatpose/job/rules.hpp"
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/result_map/registers.hpp"
@@ -42,6 +43,15 @@ struct ModbusConfig {
   result_map::WireFormat format;
   job::Handshake handshake = job::Handshake::kNumber;
   std::int64_t lease_us = 5'000'000;
+};
+
+/// [can]; without the section there is no node.
+struct CanConfig {
+  bool is_on = false;
+  std::string place;  ///< "FILE:LINE" of the interface, for messages.
+  std::string interface = "can0";
+  std::uint32_t bit_rate_per_s = 0;  ///< That the interface must have; 0: whatever it has.
+  can::Config node;
 };
 
 /// [source]: where scans come from.
@@ -85,6 +95,7 @@ struct Config {
   SearchConfig search;
   port::RealtimeConfig realtime;
   ModbusConfig modbus;
+  CanConfig can;
   SourceConfig source;
   RecordsConfig records;
   std::vector<PartConfig> parts;
@@ -100,6 +111,8 @@ void read_search(Section section, Config& config);
 void read_realtime(Section section, Config& config);
 
 void read_modbus(Section section, Config& config);
+/// After read_modbus(): both follow one handshake.
+void read_can(Section section, Config& config);
 void read_source(Section section, Config& config);
 void read_records(Section section, Config& config);
 void read_part(Section section, Config& config);

@@ -91,7 +91,13 @@ void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
 
 void warn(const Config& config, const JobSet& jobs, Log& log) {
   for (const std::string& line : jobs.problems()) log.line("warning: " + line);
-  if (!config.modbus.is_on) log.line("warning: no [modbus]: nobody can ask for anything");
+  if (!config.modbus.is_on && !config.can.is_on)
+    log.line("warning: no [modbus] and no [can]: nobody can ask for anything");
+  for (const JobConfig& job : config.jobs) {
+    if (config.can.is_on && job.rule.convention == Convention::kAbbQuaternion)
+      log.line("warning: job " + std::to_string(job.rule.job) +
+               ": a quaternion has no room in CAN's PDOs, where its status is out_of_range");
+  }
   if (!config.source.is_any()) log.line("warning: no [source]: there are no scans");
   if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");
   if (!config.source.replay.empty() && !config.source.allow_simulated)
@@ -114,7 +120,8 @@ void run_service(const Options& options, const Config& config, std::ostream& err
   SearchEngine engine(config, jobs, events);
   std::unique_ptr<Bus> bus;
   const std::uint16_t boots = counted_boots(config.records, events);
-  if (config.modbus.is_on) bus = std::make_unique<Bus>(config, jobs.rules(), engine, boots);
+  if (config.modbus.is_on || config.can.is_on)
+    bus = std::make_unique<Bus>(config, jobs.rules(), engine, boots);
   const port::ProcessSetup setup(config.realtime, root);
   log(events, setup.steps());
   engine.start();
@@ -123,7 +130,7 @@ void run_service(const Options& options, const Config& config, std::ostream& err
   warn(config, jobs, events);
   const std::string state = threads_text(config.search) + ", " +
                             std::to_string(held_bytes(config) >> 20) + " MB" +
-                            (bus ? "; Modbus TCP on " + bus->name() : std::string());
+                            (bus ? "; " + bus->name() : std::string());
   tell_ready(state);
   events.line("ready: " + state);
   serve(engine, bus.get(), signal);

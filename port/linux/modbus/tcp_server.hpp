@@ -32,6 +32,8 @@ class TcpServer {
   /// "127.0.0.1:502"
   [[nodiscard]] std::string name() const;
 
+  /// For who waits for other things too: readable when wait() would return at once.
+  [[nodiscard]] int waitable() const noexcept { return epoll_.get(); }
   /// Until something is to be done, or for `time_us` at most.
   void wait(std::int64_t time_us) noexcept;
   /// Serves what wait() has seen, closes what is too slow, lets new clients in.

@@ -50,6 +50,32 @@ TEST(Config, HoldsWhatIsGiven) {
   EXPECT_EQ(config.realtime.timer_slack_ns, 500);
 }
 
+TEST(Config, HasACanNodeWhenItsSectionIsThere) {
+  EXPECT_FALSE(parse_config(kPath, "").can.is_on);
+  const Config usual = parse_config(kPath, "[can]\n");
+  EXPECT_TRUE(usual.can.is_on);
+  EXPECT_EQ(usual.can.interface, "can0");
+  EXPECT_EQ(usual.can.node.node, 10);
+  EXPECT_EQ(usual.can.node.master, 127);
+  EXPECT_EQ(usual.can.bit_rate_per_s, 0U);
+  const Config given = parse_config(kPath,
+                                    "[can]\ninterface = \"vcan1\"\nnode = 1\nmaster = 2\n"
+                                    "heartbeat_ms = 3\nmaster_silence_ms = 4\n"
+                                    "bit_rate = 125_000\nserial = 5\n");
+  EXPECT_EQ(given.can.interface, "vcan1");
+  EXPECT_EQ(given.can.node.node, 1);
+  EXPECT_EQ(given.can.node.master, 2);
+  EXPECT_EQ(given.can.node.heartbeat_ms, 3);
+  EXPECT_EQ(given.can.node.master_silence_ms, 4);
+  EXPECT_EQ(given.can.bit_rate_per_s, 125'000U);
+  EXPECT_EQ(given.can.node.serial, 5U);
+  expect_refused("[can]\nnode = 128\n", {"dir/f.toml:2: ", "1 and 127"});
+  expect_refused("[can]\nnode = 5\nmaster = 5\n", {"dir/f.toml:3: ", "the same"});
+  expect_refused("[can]\nheartbeat_ms = 65536\n", {"dir/f.toml:2: "});
+  expect_refused("[modbus]\nhandshake = \"bits\"\n[can]\n", {"dir/f.toml:3: ", "handshake"});
+  expect_refused("[can]\nnod = 5\n", {"dir/f.toml:2: ", "node"});
+}
+
 TEST(Config, NamesFileLineAndRemedy) {
   expect_refused("[realtime]\n\npriority = 100\n",
                  {"dir/f.toml:3: 'priority' is 100; give a number between 0 and 99"});

@@ -1,0 +1,44 @@
+#pragma once
+// A node's end of a SocketCAN interface: the kernel lets through what the node listens to, and says
+// what the controller suffers (error frames). Nothing here blocks or gives up: an interface that
+// goes down, or away with its adapter, is off until it is back.
+
+#include <cstdint>
+#include <string>
+
+#include "flatpose/can/link.hpp"
+#include "port/linux/modbus/file_descriptor.hpp"
+
+namespace flatpose::port {
+
+class SocketCan final : public can::Link {
+ public:
+  /// Listens from now on.  Fails: InputError naming `subject` (no CAN in the kernel, no such
+  /// interface), std::system_error.
+  SocketCan(const std::string& subject, const std::string& interface, std::uint8_t node);
+
+  /// To wait at: readable when receive() has something.
+  [[nodiscard]] int socket() const noexcept { return socket_.get(); }
+
+  /// Cost: a system call.  Call it now and then without reason too: while the interface is off
+  /// nothing tells when it is back.
+  [[nodiscard]] Received receive() noexcept override;
+  [[nodiscard]] bool send(const can::Frame& frame) noexcept override;
+
+ private:
+  [[nodiscard]] bool bind_again() noexcept;
+  [[nodiscard]] Received failed(int error) noexcept;
+  [[nodiscard]] Received state(can::BusState state) noexcept;
+  [[nodiscard]] bool take_error_frame(std::uint32_t classes, std::uint8_t controller) noexcept;
+
+  std::string interface_;
+  FileDescriptor socket_;
+  can::BusState state_ = can::BusState::kActive;
+  bool is_down_ = false;  ///< The interface, or it is gone: `state_` is kOff.
+  bool is_told_ = false;  ///< That has been received.
+  bool is_bound_ = false;
+  bool has_lost_frames_ = false;
+  std::uint32_t drop_count_ = 0;  ///< As the kernel counts them.
+};
+
+}  // namespace flatpose::port
