@@ -58,12 +58,15 @@ struct CanConfig {
 struct SourceConfig {
   // At most one of these; none: there is no source.
   std::string replay;  ///< A file, or a folder of them.
+  std::string watch;   ///< A folder into which scans are written.
   std::string driver;  ///< The Unix socket for a camera driver.
   std::string place;
   std::optional<port::Up> up;
   bool allow_simulated = false;
 
-  [[nodiscard]] bool is_any() const noexcept { return !replay.empty() || !driver.empty(); }
+  [[nodiscard]] bool is_any() const noexcept {
+    return !replay.empty() || !watch.empty() || !driver.empty();
+  }
 };
 
 /// [records]; without a folder nothing is kept.

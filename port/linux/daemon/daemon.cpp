@@ -63,6 +63,7 @@ Config config_of(const Options& options) {
     config.modbus.place = "--modbus-port";
   }
   if (!options.scan_path.empty()) {
+    config.source.watch.clear();
     config.source.driver.clear();
     config.source.replay = options.scan_path;
     config.source.place = "--scan";

@@ -4,6 +4,7 @@
 
 #include "port/linux/daemon/driver_source.hpp"
 #include "port/linux/daemon/replay_source.hpp"
+#include "port/linux/daemon/watch_source.hpp"
 
 namespace flatpose::daemon {
 
@@ -27,6 +28,8 @@ std::unique_ptr<ScanSource> make_scan_source(const Config& config, const ScanBuf
                                              Doorbell& taker, int wake, Log& log) {
   if (!config.source.driver.empty())
     return std::make_unique<DriverSource>(config, buffers, taker, wake, log);
+  if (!config.source.watch.empty())
+    return std::make_unique<WatchSource>(config, buffers, taker, wake, log);
   if (config.source.replay.empty()) return nullptr;
   return std::make_unique<ReplaySource>(config, buffers, taker, wake);
 }

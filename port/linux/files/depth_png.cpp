@@ -72,4 +72,13 @@ Scan read_depth_png(const std::string& path, std::span<const std::byte> bytes,
   return scan;
 }
 
+bool is_depth_camera(const std::string& path) noexcept {
+  try {
+    const nlohmann::json json = parse_json(path, read_file(path, kCameraBytesMax));
+    return json.is_object() && json.contains("fx") && json.contains("depth_scale");
+  } catch (...) {
+    return false;
+  }
+}
+
 }  // namespace flatpose::port

@@ -18,4 +18,7 @@ namespace flatpose::port {
 [[nodiscard]] Scan read_depth_png(const std::string& path, std::span<const std::byte> bytes,
                                   const ReadLimits& limits = {});
 
+/// Whether the file is the camera of a depth image. Never throws.
+[[nodiscard]] bool is_depth_camera(const std::string& path) noexcept;
+
 }  // namespace flatpose::port
