@@ -92,6 +92,8 @@ struct JobConfig {
   std::string work_file;        ///< Of frame "work"; with others it says where up is.
   std::string robot_file;       ///< Of frame "robot".
   ReportRule report;
+  double verify_shift_mm = 1.0;       ///< What the work plane may have moved when it is verified.
+  double verify_tilt_rad = 0.008727;  ///< Half a degree.
 };
 
 struct Config {
@@ -122,6 +124,8 @@ void read_part(Section section, Config& config);
 /// After all parts.
 void read_job(Section section, Config& config);
 
+/// Of the one arena that searches and verifications take turns in.
+[[nodiscard]] std::size_t search_arena_bytes(const locate::Limits& limits) noexcept;
 /// What the daemon holds in memory while it runs, stacks and loading apart.
 [[nodiscard]] std::int64_t held_bytes(const Config& config);
 /// What it may take at most, so that limits and machine should allow it.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "port/linux/daemon/plane_check.hpp"
+
 namespace flatpose::daemon {
 namespace {
 
@@ -39,6 +41,11 @@ double merit(const locate::Match& match, locate::Order order, const Frames& fram
   return match.score * match.visible;
 }
 
+std::uint32_t time_since(std::int64_t start_us, const Host& host) noexcept {
+  const std::int64_t took_us = host.clock.now_us() - start_us;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, UINT32_MAX - 1));
+}
+
 }  // namespace
 
 job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
@@ -59,6 +66,10 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
     result_.answer = Answer::kNoAlignment;
     return result_;
   }
+  if (has_moved_[place_of(*job_)]) {
+    result_.answer = Answer::kAlignmentMoved;
+    return result_;
+  }
   frames_ = job_->alignment.frames(result_.frame, scan.up);
   trace_.frames = frames_;
   trace_.face = result_.frame == job::FrameName::kWork ? model::Frame::kWork : model::Frame::kScan;
@@ -71,9 +82,39 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
     const auto best = static_cast<std::size_t>(result_.matches[0].part - 1);
     result_.part_hash = set_.parts[static_cast<std::size_t>(job_->config.parts[best])].hash;
   }
-  const std::int64_t took_us = host.clock.now_us() - start_us_;
-  result_.cycle_us =
-      static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, UINT32_MAX - 1));
+  result_.cycle_us = time_since(start_us_, host);
+  return result_;
+}
+
+std::size_t JobSearch::place_of(const Job& job) const noexcept {
+  return static_cast<std::size_t>(&job - set_.jobs.data());
+}
+
+bool JobSearch::can_verify(const job::Order& order) const noexcept {
+  const Job* const job = set_.find(order.job);
+  return job != nullptr && job->alignment.work_T_scan.has_value();
+}
+
+job::ScanResult JobSearch::verify(const job::Order& order, const HeldScan& scan, Arena arena,
+                                  const Host& host, std::string& told) noexcept {
+  result_ = {};
+  const std::int64_t start_us = host.clock.now_us();
+  const Job* const job = set_.find(order.job);
+  if (job == nullptr) {
+    result_.answer = Answer::kBadJob;
+    return result_;
+  }
+  result_.frame = job->config.rule.frame;
+  result_.alignment_hash = job->alignment.hash;
+  const std::int64_t end_us =
+      std::min(order.answer_by_us, start_us + job->config.locate.deadline_us);
+  result_.answer = check_plane(*job, scan, arena, host, end_us, told);
+  result_.cycle_us = time_since(start_us, host);
+  if (result_.answer != Answer::kOk && result_.answer != Answer::kAlignmentMoved) return result_;
+  for (const Job& other : set_.jobs) {
+    if (other.alignment.work_file == job->alignment.work_file)
+      has_moved_[place_of(other)] = result_.answer == Answer::kAlignmentMoved;
+  }
   return result_;
 }
 

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <memory>
+#include <string>
 
+#include "flatpose/core/arena.hpp"
 #include "flatpose/core/host.hpp"
 #include "flatpose/job/order.hpp"
 #include "flatpose/locate/locator.hpp"
@@ -24,6 +26,14 @@ class JobSearch {
   [[nodiscard]] job::ScanResult run(const job::Order& order, const HeldScan& scan,
                                     const Host& host) noexcept;
 
+  /// Whether the order's job has a work plane that can be verified.
+  [[nodiscard]] bool can_verify(const job::Order& order) const noexcept;
+  /// Holds the scan's plane against that of the order's job: while it does not hold, every job on
+  /// the same plane is answered kAlignmentMoved.  Memory: the arena's.  `told` is a line for the
+  /// log.
+  [[nodiscard]] job::ScanResult verify(const job::Order& order, const HeldScan& scan, Arena arena,
+                                       const Host& host, std::string& told) noexcept;
+
   /// What the last run searched for and found, for the records.
   [[nodiscard]] const port::SearchTrace& trace() const noexcept { return trace_; }
 
@@ -32,6 +42,7 @@ class JobSearch {
                    const Host& host) noexcept;
   void add_matches(const Part& part, int index) noexcept;
   void add(const job::FoundMatch& added, double merit) noexcept;
+  [[nodiscard]] std::size_t place_of(const Job& job) const noexcept;
   [[nodiscard]] job::Answer without_match() const noexcept;
 
   const JobSet& set_;
@@ -44,6 +55,7 @@ class JobSearch {
   port::SearchTrace trace_;
   std::int64_t start_us_ = 0;
   int outside_count_ = 0;
+  std::array<bool, job::kJobCountMax> has_moved_{};  ///< By the job's place in the set.
 };
 
 }  // namespace flatpose::daemon

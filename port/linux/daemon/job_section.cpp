@@ -10,6 +10,7 @@
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/records/record.hpp"
 #include "port/linux/tool/region_text.hpp"
+#include "port/linux/tool/work_plane.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -107,6 +108,9 @@ void read_job(Section section, Config& config) {
   read_report(section, config, job);
   job.work_file = section.file("work").value_or("");
   job.robot_file = section.file("alignment").value_or("");
+  job.verify_shift_mm = section.number("verify_shift_mm", 0.0, 1000.0).value_or(tool::kShiftMax_mm);
+  job.verify_tilt_rad =
+      section.number("verify_tilt_deg", 0.0, 90.0).value_or(tool::kTiltMax_deg) * kRadPerDeg;
   const bool needs_work = job.rule.frame == job::FrameName::kWork;
   section.finish();
   if (needs_work && job.work_file.empty())

@@ -42,7 +42,7 @@ job::ScanResult result_of(const HeldScan* scan, Answer answer) noexcept {
 SearchEngine::SearchEngine(const Config& config, const JobSet& jobs, Log& log)
     : config_(config),
       log_(log),
-      arena_(locate::Locator::required_bytes(config.search.limits)),
+      arena_(search_arena_bytes(config.search.limits)),
       buffers_{port::PrefaultedMemory(scan_buffer_bytes(config.search.limits)),
                port::PrefaultedMemory(scan_buffer_bytes(config.search.limits))},
       event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
@@ -147,7 +147,7 @@ void SearchEngine::execute(const job::Order& order) noexcept {
       finish(order, result);
       return keep(order, result, scan, false);
     }
-    case Command::kVerifyAlignment: return finish(order, Answer::kNoAlignment);
+    case Command::kVerifyAlignment: return verify(order, replaced);
     case Command::kSaveScan: return finish(order, save_scan(order, replaced));
     case Command::kReloadJobs: return finish(order, Answer::kJobsRefused);
     case Command::kReportPick: finish(order, Answer::kOk); return report_pick(order);
@@ -173,6 +173,22 @@ void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
   times_.ended_us = clock_.now_us();
   finish(order, result);
   keep(order, result, scan, true);
+}
+
+// In the locator's memory, which holds nothing between two searches.
+void SearchEngine::verify(const job::Order& order, const Cancel& replaced) noexcept {
+  if (!search_.can_verify(order)) return finish(order, Answer::kNoAlignment);
+  const HeldScan* const scan = next_scan(order, replaced);
+  if (scan == nullptr) return finish(order, Answer::kNoScan);
+  std::string told;
+  const job::ScanResult found =
+      search_.verify(order, *scan, Arena(arena_.span()), {clock_, *workers_, &replaced}, told);
+  job::ScanResult result = result_of(scan, found.answer);
+  result.frame = found.frame;
+  result.cycle_us = found.cycle_us;
+  result.alignment_hash = found.alignment_hash;
+  finish(order, result);
+  if (!told.empty()) note("command " + std::to_string(order.number) + ": " + told);
 }
 
 // The scan of this trigger; null when it could not be read or nobody wants it any more.

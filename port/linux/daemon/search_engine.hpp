@@ -90,6 +90,7 @@ class SearchEngine {
   void work() noexcept;
   void stop() noexcept;
   void execute(const job::Order& order) noexcept;
+  void verify(const job::Order& order, const Cancel& replaced) noexcept;
   void locate(const job::Order& order, const HeldScan* scan, const Cancel& replaced) noexcept;
   [[nodiscard]] const HeldScan* next_scan(const job::Order& order, const Cancel& replaced) noexcept;
   void finish(const job::Order& order, const job::ScanResult& result) noexcept;

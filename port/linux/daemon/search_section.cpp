@@ -1,7 +1,10 @@
 // [search]: threads, and the limits that memory is taken for.
 
+#include <algorithm>
+
 #include "port/linux/cpu/vector_path.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/plane_check.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
 #include "port/linux/daemon/section.hpp"
 
@@ -39,10 +42,14 @@ void read_search(Section section, Config& config) {
   section.finish();
 }
 
+std::size_t search_arena_bytes(const locate::Limits& limits) noexcept {
+  return std::max(locate::Locator::required_bytes(limits), plane_check_bytes(limits));
+}
+
 std::int64_t held_bytes(const Config& config) {
   const locate::Limits& limits = config.search.limits;
   const int scan_count = kScanBufferCount + (config.records.folder.empty() ? 0 : kRecordCount);
-  return static_cast<std::int64_t>(locate::Locator::required_bytes(limits)) +
+  return static_cast<std::int64_t>(search_arena_bytes(limits)) +
          scan_count * static_cast<std::int64_t>(scan_buffer_bytes(limits));
 }
 

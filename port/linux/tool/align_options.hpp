@@ -4,7 +4,9 @@
 #include <string>
 
 #include "port/linux/tool/command.hpp"
+#include "port/linux/tool/loaded_scan.hpp"
 #include "port/linux/tool/options.hpp"
+#include "port/linux/tool/work_plane.hpp"
 
 namespace flatpose::tool {
 
@@ -14,6 +16,8 @@ struct AlignOptions {
   std::string touch_path;   ///< The pairs; empty: no --touch.
   std::string verify_path;  ///< The work plane to verify; empty: none.
   double rms_max_mm = 3.0;
+  double shift_max_mm = kShiftMax_mm;
+  double tilt_max_deg = kTiltMax_deg;
   ScanOptions reading;  ///< With --touch its work plane says what frame the scan's points are in.
 };
 
@@ -21,5 +25,10 @@ struct AlignOptions {
 [[nodiscard]] ExitCode align_plane(const AlignOptions& options, Report& report);
 /// The robot's frame from touched points.
 [[nodiscard]] ExitCode align_touch(const AlignOptions& options, Report& report);
+/// Whether a work plane still lies where it did; kNone: it does not.
+[[nodiscard]] ExitCode align_verify(const AlignOptions& options, Report& report);
+
+/// The plane that a scan shows.  Fails: NothingFound.
+[[nodiscard]] WorkPlane plane_of(const LoadedScan& loaded);
 
 }  // namespace flatpose::tool

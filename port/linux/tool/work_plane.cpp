@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "flatpose/core/maths.hpp"
@@ -11,6 +12,10 @@
 namespace flatpose::tool {
 namespace {
 
+using Points = std::span<const Vec3>;
+
+constexpr int kPointsMin = 30;
+constexpr int kHypothesesPerLook = 50;
 constexpr std::size_t kHypothesisPoints = 4000;  // that a hypothesis is judged by
 constexpr std::size_t kFitPoints = 200'000;      // that the last plane is fitted to
 constexpr int kHypotheses = 3000;
@@ -45,20 +50,27 @@ class Random {
   std::uint64_t state_ = 2015;
 };
 
+// So many at most: one of every few pixels, with no fewer than `count_max`.
+std::size_t sample_size(std::size_t pixel_count, std::size_t count_max) noexcept {
+  const std::size_t stride = std::max<std::size_t>(1, pixel_count / count_max);
+  return (pixel_count + stride - 1) / stride;
+}
+
 // Valid points with z up: one at random of every few pixels, so that no rhythm of the rows
-// matters.
-std::vector<Vec3> sample(const RangeImageView& scan, int up_sign, std::size_t count_max) {
+// matters.  Returns those there are of `room`.
+std::span<Vec3> sample(const RangeImageView& scan, int up_sign, std::size_t count_max,
+                       std::span<Vec3> room) noexcept {
   const std::size_t size = scan.size();
   const std::size_t stride = std::max<std::size_t>(1, size / count_max);
-  std::vector<Vec3> points;
+  std::size_t count = 0;
   Random random;
   for (std::size_t start = 0; start < size; start += stride) {
     const std::size_t pixel = std::min(start + random.index(stride), size - 1);
     const auto width = static_cast<std::size_t>(scan.width_px);
     const Vec3 p = scan(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
-    if (is_valid(p)) points.push_back({p.x, p.y, up_sign * p.z});
+    if (is_valid(p)) room[count++] = {p.x, p.y, up_sign * p.z};
   }
-  return points;
+  return room.first(count);
 }
 
 std::optional<Plane> through(const Vec3& p, const Vec3& q, const Vec3& r) noexcept {
@@ -71,7 +83,7 @@ std::optional<Plane> through(const Vec3& p, const Vec3& q, const Vec3& r) noexce
   return plane;
 }
 
-double worth(const std::vector<Vec3>& points, const Plane& plane, double tolerance_mm) noexcept {
+double worth(Points points, const Plane& plane, double tolerance_mm) noexcept {
   std::size_t on = 0;
   std::size_t below = 0;
   for (const Vec3& p : points) {
@@ -84,11 +96,12 @@ double worth(const std::vector<Vec3>& points, const Plane& plane, double toleran
   return static_cast<double>(on) - kBelowWeight * excess;
 }
 
-std::optional<Plane> best_hypothesis(const std::vector<Vec3>& points, double tolerance_mm) {
+Result<Plane> best_hypothesis(Points points, double tolerance_mm, const Budget& budget) noexcept {
   std::optional<Plane> best;
   double best_worth = kInlierShareMin * static_cast<double>(points.size());
   Random random;
   for (int i = 0; i < kHypotheses; ++i) {
+    if (i % kHypothesesPerLook == 0 && budget.is_over()) return Status::kStopped;
     const Vec3& p = points[random.index(points.size())];
     const Vec3& q = points[random.index(points.size())];
     const Vec3& r = points[random.index(points.size())];
@@ -99,12 +112,11 @@ std::optional<Plane> best_hypothesis(const std::vector<Vec3>& points, double tol
     best = plane;
     best_worth = value;
   }
-  return best;
+  return best ? Result<Plane>(*best) : Status::kTooFewPoints;
 }
 
 // The symmetric 3 x 3 system of weighted least squares, by Cramer's rule about the points' middle.
-std::optional<Plane> weighted_fit(const std::vector<Vec3>& points, const Plane& from,
-                                  double reach_mm) noexcept {
+std::optional<Plane> weighted_fit(Points points, const Plane& from, double reach_mm) noexcept {
   double w_sum = 0, x_sum = 0, y_sum = 0, z_sum = 0;
   const auto weight = [&](const Vec3& p) {
     const double u = from.above_mm(p) / reach_mm;
@@ -137,25 +149,27 @@ std::optional<Plane> weighted_fit(const std::vector<Vec3>& points, const Plane& 
 }
 
 // Tukey's biweight with a reach from the residuals' own spread, never wider than it began.
-std::optional<Plane> settle(const std::vector<Vec3>& points, Plane plane, double tolerance_mm) {
+Result<Plane> settle(Points points, Plane plane, double tolerance_mm, std::span<double> off_mm,
+                     const Budget& budget) noexcept {
   double reach_mm = 2.0 * tolerance_mm;
-  std::vector<double> off_mm;
   for (int step = 0; step < kFitSteps; ++step) {
+    if (budget.is_over()) return Status::kStopped;
     const std::optional<Plane> next = weighted_fit(points, plane, reach_mm);
-    if (!next) return {};
+    if (!next) return Status::kTooFewPoints;
     const bool is_still = std::fabs(next->a - plane.a) < 1e-12 &&
                           std::fabs(next->b - plane.b) < 1e-12 &&
                           std::fabs(next->c - plane.c) < 1e-9;
     plane = *next;
     if (is_still) break;
-    off_mm.clear();
+    std::size_t count = 0;
     for (const Vec3& p : points) {
       const double off = std::fabs(plane.above_mm(p));
-      if (off < 2.0 * tolerance_mm) off_mm.push_back(off);
+      if (off < 2.0 * tolerance_mm) off_mm[count++] = off;
     }
-    if (off_mm.empty()) return {};
-    const auto middle = off_mm.begin() + static_cast<std::ptrdiff_t>(off_mm.size() / 2);
-    std::nth_element(off_mm.begin(), middle, off_mm.end());
+    if (count == 0) return Status::kTooFewPoints;
+    const auto begin = off_mm.begin();
+    const auto middle = begin + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(begin, middle, begin + static_cast<std::ptrdiff_t>(count));
     constexpr double kSigmaPerMedian = 1.4826;
     constexpr double kTukey = 4.685;
     reach_mm =
@@ -175,7 +189,7 @@ Pose work_frame(const Plane& plane, const Vec3& middle_mm, int up_sign) noexcept
 
 // The middle of all that is valid, and how well the plane carries it.
 void measure(const RangeImageView& scan, int up_sign, const Plane& plane, double tolerance_mm,
-             WorkPlane& found) {
+             WorkPlane& found) noexcept {
   Vec3 low{1e9, 1e9, 0.0};
   Vec3 high{-1e9, -1e9, 0.0};
   std::int64_t valid_count = 0;
@@ -198,25 +212,67 @@ void measure(const RangeImageView& scan, int up_sign, const Plane& plane, double
   found.inlier_share = static_cast<double>(found.inlier_count) /
                        static_cast<double>(std::max<std::int64_t>(1, valid_count));
   found.work_T_scan = work_frame(plane, 0.5 * (low + high), up_sign);
+  std::size_t corner = 0;
+  for (const double x : {low.x, high.x})
+    for (const double y : {low.y, high.y})
+      found.corner_scan_mm[corner++] = {x, y, up_sign * (plane.a * x + plane.b * y + plane.c)};
   found.tilt_rad = arc_cosine(1.0 / std::sqrt(1.0 + plane.a * plane.a + plane.b * plane.b));
+}
+
+struct Scratch {
+  std::span<Vec3> points;
+  std::span<double> off_mm;
+};
+
+Scratch take_scratch(Arena& arena, std::size_t pixel_count) noexcept {
+  const std::size_t count =
+      std::max(sample_size(pixel_count, kHypothesisPoints), sample_size(pixel_count, kFitPoints));
+  return {arena.take<Vec3>(count), arena.take<double>(count)};
 }
 
 }  // namespace
 
-std::optional<WorkPlane> find_work_plane(const RangeImageView& scan, int up_sign, double noise_mm,
-                                         double pitch_mm) {
-  constexpr std::size_t kPointsMin = 30;
+std::size_t work_plane_bytes(std::size_t pixel_count) noexcept {
+  Arena arena = Arena::measuring();
+  (void)take_scratch(arena, pixel_count);
+  return arena.required_bytes();
+}
+
+Result<WorkPlane> find_work_plane(const RangeImageView& scan, int up_sign, double noise_mm,
+                                  double pitch_mm, Arena& arena, const Budget& budget) noexcept {
   const double tolerance_mm = std::max({4.0 * noise_mm, 0.25 * pitch_mm, 1e-3});
-  const std::vector<Vec3> few = sample(scan, up_sign, kHypothesisPoints);
-  if (few.size() < kPointsMin) return {};
-  const std::optional<Plane> rough = best_hypothesis(few, tolerance_mm);
-  if (!rough) return {};
-  const std::optional<Plane> plane =
-      settle(sample(scan, up_sign, kFitPoints), *rough, tolerance_mm);
-  if (!plane) return {};
+  const ArenaScope scope(arena);
+  const Scratch scratch = take_scratch(arena, scan.size());
+  if (arena.failed()) return Status::kOutOfMemory;
+  const Points few = sample(scan, up_sign, kHypothesisPoints, scratch.points);
+  if (few.size() < kPointsMin) return Status::kTooFewPoints;
+  const Result<Plane> rough = best_hypothesis(few, tolerance_mm, budget);
+  if (!rough) return rough.status();
+  const Points many = sample(scan, up_sign, kFitPoints, scratch.points);
+  const Result<Plane> plane = settle(many, *rough, tolerance_mm, scratch.off_mm, budget);
+  if (!plane) return plane.status();
   WorkPlane found;
   measure(scan, up_sign, *plane, tolerance_mm, found);
   return found;
+}
+
+std::optional<WorkPlane> find_work_plane(const RangeImageView& scan, int up_sign, double noise_mm,
+                                         double pitch_mm) {
+  std::vector<std::byte> memory(work_plane_bytes(scan.size()));
+  Arena arena(memory);
+  const Result<WorkPlane> found =
+      find_work_plane(scan, up_sign, noise_mm, pitch_mm, arena, Budget());
+  return found ? std::optional(*found) : std::nullopt;
+}
+
+PlaneShift shift_of(const WorkPlane& found, const Pose& work_T_scan) noexcept {
+  PlaneShift shift;
+  const Pose work_T_found = work_T_scan * found.work_T_scan.inverse();
+  shift.middle_mm = work_T_found.position_mm.z;
+  shift.tilt_rad = arc_cosine(std::clamp(work_T_found.rotation.m[8], -1.0, 1.0));
+  for (const Vec3& corner : found.corner_scan_mm)
+    shift.greatest_mm = std::max(shift.greatest_mm, std::fabs((work_T_scan * corner).z));
+  return shift;
 }
 
 }  // namespace flatpose::tool

@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 
+#include "port/linux/files/work_file.hpp"
+#include "port/linux/tool/work_plane.hpp"
 #include "tests/port/linux/daemon/served.hpp"
 
 namespace flatpose::daemon {
@@ -201,6 +204,91 @@ TEST_F(JobsServed, RobotFrameWithoutAnAlignmentHasNoPose) {
   for (const char* part : {"job 2 has no alignment", "job 3 has no alignment", "none.json",
                            "job 4 has no alignment", "broken.json", "job 5 has no alignment"})
     EXPECT_NE(daemon.log().find(part), std::string::npos) << part << ":\n" << daemon.log();
+}
+
+/// The example's scan moved up by so much, or with every point missing (NaN).
+std::string moved_scan(double up_mm) {
+  const port::Scan scan = port::read_scan(kScan);
+  const double z_up = scan.up == port::Up::kPlusZ ? 1.0 : -1.0;
+  std::string text =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n"
+      "COUNT 1 1 1\nWIDTH " +
+      std::to_string(scan.width_px) + "\nHEIGHT " + std::to_string(scan.height_px) +
+      "\nVIEWPOINT 0 0 " + (z_up > 0 ? "100000" : "-100000") + " 1 0 0 0\nPOINTS " +
+      std::to_string(scan.xyz_mm.size() / 3) + "\nDATA binary\n";
+  for (std::size_t i = 0; i < scan.xyz_mm.size(); ++i) {
+    const bool is_z = i % 3 == 2;
+    const auto value = std::isnan(up_mm)
+                           ? std::nanf("")
+                           : static_cast<float>(scan.xyz_mm[i] + (is_z ? z_up * up_mm : 0.0));
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  return text;
+}
+
+/// The plane of the example's scan, as flatpose align finds it.
+void write_plane(const std::string& path) {
+  const port::Scan scan = port::read_scan(kScan);
+  const auto plane =
+      tool::find_work_plane(scan.view(), scan.up == port::Up::kPlusZ ? 1 : -1, 0.1, 1.5);
+  ASSERT_TRUE(plane);
+  port::write_work_file(path, {plane->work_T_scan, scan.up, {}});
+}
+
+constexpr auto kVerify = static_cast<std::uint16_t>(job::Command::kVerifyAlignment);
+
+TEST_F(JobsServed, VerifyTellsWhetherThePlaneHoldsAndGuardsItsJobs) {
+  write_plane(folder_.path("work.json"));
+  folder_.write("robot.json", robot_json(kRobotTScan));
+  const std::string scan = folder_.write("s.pcd", moved_scan(0.0));
+  const std::string config = dry_run(
+      "work = \"work.json\"\nframe = \"work\"",
+      "[[job]]\nnumber = 2\nparts = [\"pad\"]\n"
+      "[[job]]\nnumber = 3\nparts = [\"pad\"]\nframe = \"robot\"\nwork = \"work.json\"\n"
+      "alignment = \"robot.json\"\n"
+      "[[job]]\nnumber = 4\nparts = [\"pad\"]\nwork = \"work.json\"\nverify_shift_mm = 5\n");
+  RunningDaemon daemon({"--config", config, "--scan", scan});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  std::uint16_t number = 0;
+  const auto status = [&](std::uint16_t command, std::uint16_t job) {
+    const Plc::Block block = plc.trigger(++number, 0, command, job);
+    EXPECT_EQ(block.has(job::kValid), command == 1 && block[Field::kStatus] >= 0);
+    return static_cast<Answer>(block[Field::kStatus]);
+  };
+  const auto shows = [&](double up_mm) {
+    std::filesystem::rename(folder_.write("next.pcd", moved_scan(up_mm)), scan);
+  };
+  EXPECT_EQ(status(1, 1), Answer::kOk);
+  EXPECT_EQ(status(kVerify, 1), Answer::kOk);
+  EXPECT_EQ(plc.block()[Field::kScannedNumber], number);
+  EXPECT_EQ(plc.block()[Field::kMatchCount], 0);
+  EXPECT_NE(plc.block()[Field::kAlignmentHash], 0);
+  EXPECT_EQ(status(kVerify, 2), Answer::kNoAlignment);  // there is no plane to verify
+  EXPECT_EQ(status(1, 1), Answer::kOk);
+
+  shows(2.0);
+  EXPECT_EQ(status(1, 1), Answer::kOk);  // not yet verified
+  EXPECT_EQ(status(kVerify, 1), Answer::kAlignmentMoved);
+  EXPECT_TRUE(plc.block().has(job::kError));
+  for (const std::uint16_t job : {std::uint16_t{1}, std::uint16_t{3}, std::uint16_t{4}})
+    EXPECT_EQ(status(1, job), Answer::kAlignmentMoved) << job;
+  EXPECT_EQ(status(1, 2), Answer::kOk);        // another frame is no matter of this plane
+  EXPECT_EQ(status(kVerify, 4), Answer::kOk);  // that job allows more
+  EXPECT_EQ(status(1, 1), Answer::kOk);
+  EXPECT_EQ(status(kVerify, 3), Answer::kAlignmentMoved);
+
+  shows(std::nan(""));
+  EXPECT_EQ(status(kVerify, 1), Answer::kScanPoor);  // says nothing of the plane
+  shows(0.0);
+  EXPECT_EQ(status(1, 1), Answer::kAlignmentMoved);
+  EXPECT_EQ(status(kVerify, 1), Answer::kOk);
+  EXPECT_EQ(status(1, 1), Answer::kOk);
+  EXPECT_EQ(status(1, 3), Answer::kOk);
+  daemon.stop(SIGTERM);
+  EXPECT_NE(daemon.log().find("the work plane of job 1 does not hold: moved +2.0"),
+            std::string::npos)
+      << daemon.log();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "flatpose/core/maths.hpp"
@@ -93,6 +94,65 @@ TEST(WorkPlane, RubbleAndMissingPointsHaveNone) {
   EXPECT_FALSE(find_work_plane(missing.view(), 1, kNoise_mm, 1.0));
   const Scan wall([](double x, double) { return 5.0 * x; }, 1);  // 79 degrees
   EXPECT_FALSE(find_work_plane(wall.view(), 1, kNoise_mm, 1.0));
+}
+
+TEST(WorkPlane, InTheCallersMemoryItIsTheSame) {
+  const Scan scan(flat, 1);
+  std::vector<std::byte> memory(work_plane_bytes(scan.view().size()));
+  Arena arena(memory);
+  const auto a = find_work_plane(scan.view(), 1, kNoise_mm, 1.0, arena, Budget());
+  const auto b = find_work_plane(scan.view(), 1, kNoise_mm, 1.0);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->work_T_scan.rotation.m, b->work_T_scan.rotation.m);
+  EXPECT_EQ(arena.used_bytes(), 0U);
+  Arena small(std::span<std::byte>(memory).first(memory.size() / 2));
+  EXPECT_EQ(find_work_plane(scan.view(), 1, kNoise_mm, 1.0, small, Budget()).status(),
+            Status::kOutOfMemory);
+}
+
+TEST(WorkPlane, IsGivenUpWhenNobodyWantsIt) {
+  struct Always final : Cancel {
+    [[nodiscard]] bool is_asked_for() const noexcept override { return true; }
+  };
+  const Scan scan(flat, 1);
+  std::vector<std::byte> memory(work_plane_bytes(scan.view().size()));
+  Arena arena(memory);
+  const Always always;
+  const StoppedClock clock;
+  const Budget over({clock, callers_thread, &always}, Budget::kNoEnd);
+  EXPECT_EQ(find_work_plane(scan.view(), 1, kNoise_mm, 1.0, arena, over).status(),
+            Status::kStopped);
+}
+
+TEST(PlaneShift, IsWhatThePlaneWasMovedBy) {
+  for (const int up_sign : {1, -1}) {
+    const Scan before(flat, up_sign);
+    const auto aligned = find_work_plane(before.view(), up_sign, kNoise_mm, 1.0);
+    ASSERT_TRUE(aligned);
+    const PlaneShift none = shift_of(*aligned, aligned->work_T_scan);
+    EXPECT_NEAR(none.greatest_mm, 0.0, 1e-9);
+    EXPECT_NEAR(none.tilt_rad, 0.0, 1e-6);
+    EXPECT_TRUE(none.is_within(1e-6, 1e-5));
+
+    const Scan raised([](double x, double y) { return flat(x, y) + 2.0; }, up_sign);
+    const auto higher = find_work_plane(raised.view(), up_sign, kNoise_mm, 1.0);
+    const PlaneShift up = shift_of(*higher, aligned->work_T_scan);
+    EXPECT_NEAR(up.middle_mm, 2.0 / std::sqrt(1.0125), 0.02);  // along the normal
+    EXPECT_NEAR(up.greatest_mm, up.middle_mm, 0.02);
+    EXPECT_NEAR(up.tilt_rad, 0.0, 1e-3);
+    EXPECT_FALSE(up.is_within(1.9, 1.0));
+    EXPECT_TRUE(up.is_within(2.1, 1.0));
+
+    // About the middle: it stays there, and rises by half the width at the sides.
+    const Scan leaning([](double x, double y) { return flat(x, y) + 0.02 * (x - 29.5); }, up_sign);
+    const auto tilted = find_work_plane(leaning.view(), up_sign, kNoise_mm, 1.0);
+    const PlaneShift turn = shift_of(*tilted, aligned->work_T_scan);
+    EXPECT_NEAR(turn.middle_mm, 0.0, 0.02);
+    EXPECT_NEAR(turn.tilt_rad, 0.02, 5e-4);
+    EXPECT_NEAR(turn.greatest_mm, 0.02 * 59.5, 0.05);
+    EXPECT_FALSE(turn.is_within(5.0, 0.019));
+    EXPECT_FALSE(turn.is_within(1.0, 0.1));
+  }
 }
 
 }  // namespace
