@@ -40,10 +40,12 @@ TEST_F(Verify, TellsByHowMuchItMoved) {
 
 TEST_F(Verify, RefusesWhatMakesNoSense) {
   const std::string scan = path("a.pcd"), work = path("work.json");
+  const bool is_plus = port::read_work_file(work).up == port::Up::kPlusZ;
+  const std::string other_up = is_plus ? "-z" : "+z";
   expect_refused(run({"align", scan, "--verify", work, "-o", path("x")}), 2, "SCAN alone");
   expect_refused(run({"align", "--verify", work}), 2, "SCAN alone");
   expect_refused(run({"align", scan, "--verify", path("none")}), 2, "none");
-  expect_refused(run({"align", scan, "--verify", work, "--up", "+z"}), 2, "--up");
+  expect_refused(run({"align", scan, "--verify", work, "--up", other_up}), 2, "--up");
   expect_refused(run({"align", scan, "--verify", work, "--max-shift", "-1"}), 2, "--max-shift");
 }
 
