@@ -10,6 +10,11 @@ if(TARGET flatpose_fieldbus)
   set_target_properties(flatpose_fieldbus PROPERTIES EXPORT_NAME fieldbus)
 endif()
 
+if(TARGET flatpose_camera)
+  list(APPEND libraries flatpose_camera)
+  set(c_driver ${PROJECT_SOURCE_DIR}/examples/camera_driver.c)
+endif()
+
 # In the tree headers lie beside the sources; elsewhere in one folder.
 foreach(library ${libraries})
   get_target_property(folders ${library} INTERFACE_INCLUDE_DIRECTORIES)
@@ -18,12 +23,12 @@ foreach(library ${libraries})
 endforeach()
 install(TARGETS ${libraries} EXPORT flatposeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT flatposeTargets NAMESPACE flatpose:: DESTINATION ${package_dir})
-install(CODE "set(source_dir \"${PROJECT_SOURCE_DIR}\")\nset(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")")
+install(CODE "set(source_dir \"${PROJECT_SOURCE_DIR}\")\nset(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")\nset(libraries \"${libraries}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_headers.cmake)
 
-install(FILES ${PROJECT_SOURCE_DIR}/examples/find_plate.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(FILES ${PROJECT_SOURCE_DIR}/examples/find_plate.c ${c_driver} DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
-foreach(program flatpose_tool flatposed)
+foreach(program flatpose_tool flatposed flatpose_camera_replay)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
   endif()

@@ -2,7 +2,7 @@
 
 programs  every program runs where it was installed
 library   no header shows another library's; a project that finds flatpose by find_package() builds and runs, and so does
-          the same program by pkg-config; also after the installed tree was moved. The example in C needs no more than a C
+          the same program by pkg-config; also after the installed tree was moved. The examples in C need no more than a C
           compiler and its linker
 """
 import os
@@ -72,6 +72,8 @@ def check_library(cmake, build):
     run(folder / "by_pkg_config")
     run(C_COMPILER, "-std=c11", examples / "find_plate.c", "-o", folder / "find_plate", *flags, "-lm")
     run(folder / "find_plate")
+    flags = run("pkg-config", "--cflags", "--libs", "flatpose-camera", stdout=subprocess.PIPE, text=True).stdout.split()
+    run(C_COMPILER, "-std=c11", examples / "camera_driver.c", "-o", folder / "camera_driver", *flags)
 
 
 def main():

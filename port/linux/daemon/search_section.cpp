@@ -4,6 +4,7 @@
 
 #include "port/linux/cpu/vector_path.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/driver_scan.hpp"
 #include "port/linux/daemon/plane_check.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
 #include "port/linux/daemon/section.hpp"
@@ -49,7 +50,8 @@ std::size_t search_arena_bytes(const locate::Limits& limits) noexcept {
 std::int64_t held_bytes(const Config& config) {
   const locate::Limits& limits = config.search.limits;
   const int scan_count = kScanBufferCount + (config.records.folder.empty() ? 0 : kRecordCount);
-  return static_cast<std::int64_t>(search_arena_bytes(limits)) +
+  const std::size_t driver_bytes = config.source.driver.empty() ? 0 : driver_memory_bytes(limits);
+  return static_cast<std::int64_t>(search_arena_bytes(limits) + driver_bytes) +
          scan_count * static_cast<std::int64_t>(scan_buffer_bytes(limits));
 }
 

@@ -302,6 +302,21 @@ TEST(Config, HoldsWhatAJobPrefers) {
   expect_refused(job + "preferred_angle_deg = \"x\"\n", {"dir/f.toml:6: "});
 }
 
+TEST(Config, HasOneSourceOfScans) {
+  const Config watch = parse_config(kPath, "[source]\nwatch = \"scans\"\n");
+  EXPECT_EQ(watch.source.watch, "dir/scans");
+  EXPECT_EQ(watch.source.place, "dir/f.toml:2");
+  const Config driver = parse_config(kPath, "[source]\ndriver = \"/run/c.sock\"\n");
+  EXPECT_EQ(driver.source.driver, "/run/c.sock");
+  EXPECT_TRUE(driver.source.is_any());
+  EXPECT_FALSE(parse_config(kPath, "").source.is_any());
+  expect_refused("[source]\nwatch = \"a\"\ndriver = \"b\"\n",
+                 {"dir/f.toml:3: a second source of scans; keep one of replay, watch, driver"});
+  expect_refused("[source]\ndriver = \"\"\n", {"dir/f.toml:2: 'driver' is no path"});
+  // The memory that a driver is handed counts.
+  EXPECT_EQ(held_bytes(driver) - held_bytes(watch), 16 * 1536 * 1280);
+}
+
 TEST(Config, OfTheExampleIsTheUsualOne) {
   const Config example = load_config(FLATPOSE_SOURCE_DIR "/port/linux/examples/flatposed.toml");
   const Config usual = parse_config(kPath, "");

@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
-#include <filesystem>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -471,6 +471,16 @@ std::string refusal_of(const std::string& config) {
   const std::vector<std::string> words{"--config", config};
   EXPECT_EQ(run_daemon(words, out, err), 2) << err.str();
   return err.str();
+}
+
+TEST_F(Driver, OfTheExampleInCIsServed) {
+  serve(write_config());
+  const RunningProgram driver({FLATPOSE_CAMERA_DRIVER, socket()});
+  ASSERT_TRUE(is_ready());
+  const Plc::Block block = plc_->trigger(1, 0, static_cast<std::uint16_t>(job::Command::kCapture));
+  EXPECT_EQ(answer_of(block), Answer::kOk);
+  EXPECT_EQ(block[Field::kScannedNumber], 1);
+  EXPECT_TRUE(block.has(job::kSimulated));
 }
 
 TEST_F(Driver, SocketIsTheDaemonsAlone) {

@@ -18,20 +18,22 @@
 
 namespace flatpose::daemon {
 
-/// flatpose-camera-replay.
-class RunningDriver {
+/// A program and its words, until it is stopped.
+class RunningProgram {
  public:
-  RunningDriver(const std::string& socket, const std::string& scan) {
+  explicit RunningProgram(std::vector<std::string> words) {
     pid_ = fork();
     if (pid_ == 0) {
-      execl(FLATPOSE_CAMERA_REPLAY, "flatpose-camera-replay", "--socket", socket.c_str(), "--scan",
-            scan.c_str(), nullptr);
+      std::vector<char*> arguments;
+      for (std::string& word : words) arguments.push_back(word.data());
+      arguments.push_back(nullptr);
+      execv(arguments[0], arguments.data());
       _exit(127);
     }
   }
-  ~RunningDriver() { stop(SIGKILL); }
-  RunningDriver(const RunningDriver&) = delete;
-  RunningDriver& operator=(const RunningDriver&) = delete;
+  ~RunningProgram() { stop(SIGKILL); }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
 
   void stop(int signal) {
     if (pid_ <= 0) return;
@@ -41,6 +43,13 @@ class RunningDriver {
 
  private:
   pid_t pid_ = 0;
+};
+
+/// flatpose-camera-replay.
+class RunningDriver : public RunningProgram {
+ public:
+  RunningDriver(const std::string& socket, const std::string& scan)
+      : RunningProgram({FLATPOSE_CAMERA_REPLAY, "--socket", socket, "--scan", scan}) {}
 };
 
 /// One connection by the client's library.

@@ -1,4 +1,4 @@
-// The unit file grants what [realtime] can ask for.
+// The unit file grants what the config can ask for.
 
 #include <gtest/gtest.h>
 
@@ -27,6 +27,15 @@ TEST(Unit, GrantsWhatRealTimeAsksFor) {
   EXPECT_TRUE(has("DeviceAllow=/dev/cpu_dma_latency rw"));
   EXPECT_FALSE(has("RestrictRealtime=yes"));
   EXPECT_FALSE(has("PrivateDevices=yes"));
+}
+
+TEST(Unit, MakesTheFolderOfTheCamerasSocket) {
+  EXPECT_TRUE(has("RuntimeDirectory=flatpose"));
+  EXPECT_TRUE(has("RuntimeDirectoryMode=0750"));  // the group's: the driver's user belongs to it
+  bool may_use_unix = false;
+  for (const std::string& line : lines_of_unit())
+    may_use_unix = may_use_unix || line.rfind("RestrictAddressFamilies=AF_UNIX ", 0) == 0;
+  EXPECT_TRUE(may_use_unix);
 }
 
 }  // namespace
