@@ -54,13 +54,13 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   result_ = {};
   result_.answer = Answer::kPending;
   outside_count_ = 0;
+  trace_.clear();
   job_ = set_.find(order.job);
   if (job_ == nullptr) {
     result_.answer = Answer::kBadJob;
     return result_;
   }
   result_.frame = job_->config.rule.frame;
-  trace_.clear();
   result_.alignment_hash = job_->alignment.hash;
   if (!job_->alignment.serves(result_.frame)) {
     result_.answer = Answer::kNoAlignment;
@@ -130,6 +130,8 @@ void JobSearch::search_part(int part, int index, const job::Order& order, const 
   const std::int64_t now_us = host.clock.now_us();
   const std::int64_t end_us = std::min(order.answer_by_us, start_us_ + config.deadline_us);
   config.deadline_us = std::max<std::int64_t>(end_us - now_us, 1);
+  // What lies outside takes no place from what lies inside.
+  if (job_->config.report.limits != PoseLimits{}) config.max_matches = job::kMatchesPerScanMax;
   const Part& searched = set_.parts[static_cast<std::size_t>(part)];
   const Status status = locator_.locate(*searched.model, scan.view, frames_, config, host, *found_);
   Answer answer = answer_of_fault(status);

@@ -33,6 +33,8 @@ struct PoseLimits {
   Vec3 greatest_mm{1e9, 1e9, 1e9};
   /// Of the object's z against the plane's, or of the tool's against straight down.
   double tilt_rad = 10.0;
+
+  friend bool operator==(const PoseLimits&, const PoseLimits&) = default;
 };
 
 [[nodiscard]] bool is_inside(const PoseLimits& limits, const Pose& face_T_reported, PoseKind kind,
