@@ -29,13 +29,13 @@ install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install_headers.cmake)
 install(FILES ${PROJECT_SOURCE_DIR}/examples/find_plate.c ${c_driver} DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 foreach(program flatpose_tool flatposed flatpose_camera_replay)
-  if(TARGET ${program})
+  if(TARGET ${program} AND NOT FLATPOSE_BUILD_GUEST)  # where they are built to be tried, not to be used
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
   endif()
 endforeach()
 
 # What the daemon's service needs, in their places below the prefix /usr, which the unit names.
-if(TARGET flatposed)
+if(TARGET flatposed AND NOT FLATPOSE_BUILD_GUEST)
   set(linux ${PROJECT_SOURCE_DIR}/port/linux)
   install(FILES ${linux}/examples/flatposed.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/flatpose COMPONENT programs)
   install(FILES ${linux}/systemd/flatposed.service DESTINATION lib/systemd/system COMPONENT programs)

@@ -23,7 +23,7 @@ using can::BusState;
 constexpr int kPassedOverMax = 64;
 
 // What a node listens to; extended and remote frames are none of it.
-void set_filters(int socket, std::uint8_t node) {
+bool set_filters(int socket, std::uint8_t node) noexcept {
   constexpr canid_t kExact = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
   constexpr canid_t kAnyNode = 0x780 | CAN_EFF_FLAG | CAN_RTR_FLAG;
   const can_filter filters[] = {{can::kNmtId, kExact},
@@ -33,11 +33,9 @@ void set_filters(int socket, std::uint8_t node) {
                                 {can::kHeartbeatBase, kAnyNode}};
   constexpr can_err_mask_t kErrors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
   constexpr int kOn = 1;
-  const bool is_done =
-      setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters, sizeof filters) == 0 &&
-      setsockopt(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &kErrors, sizeof kErrors) == 0 &&
-      setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &kOn, sizeof kOn) == 0;
-  if (!is_done) throw std::system_error(errno, std::generic_category(), "CAN filters");
+  return setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters, sizeof filters) == 0 &&
+         setsockopt(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &kErrors, sizeof kErrors) == 0 &&
+         setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &kOn, sizeof kOn) == 0;
 }
 
 bool bind_to(int socket, int index) noexcept {
@@ -67,21 +65,27 @@ can::Frame frame_of(const can_frame& raw) noexcept {
   return frame;
 }
 
+// Down, or gone.
+bool is_of_interface(int error) noexcept {
+  return error == ENETDOWN || error == ENODEV || error == ENXIO;
+}
+
 }  // namespace
 
 SocketCan::SocketCan(const std::string& subject, const std::string& interface, std::uint8_t node)
     : interface_(interface),
+      node_(node),
       socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
   if (!socket_.is_open() && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     throw InputError(subject, "this kernel has no CAN", "load its module: modprobe can_raw");
   if (!socket_.is_open()) throw std::system_error(errno, std::generic_category(), "CAN socket");
   const CanInterface found = look_at_can(interface);
   check_can(subject, interface, found, 0);
-  set_filters(socket_.get(), node);
+  if (!set_filters(socket_.get(), node))
+    throw std::system_error(errno, std::generic_category(), "CAN filters");
   if (!bind_to(socket_.get(), found.index))
     throw InputError(subject, interface + " cannot be used: " + std::strerror(errno),
                      "name a CAN interface");
-  is_bound_ = true;
   is_down_ = !found.is_up;
   if (is_down_ || found.is_bus_off) state_ = BusState::kOff;
   is_told_ = state_ == BusState::kActive;
@@ -96,17 +100,21 @@ can::Link::Received SocketCan::state(BusState state) noexcept {
   return told;
 }
 
+// An interface that went away with its adapter has taken the filters with it, and has another
+// number when it is back. What the socket still has to say of before is dropped.
 bool SocketCan::bind_again() noexcept {
   const CanInterface found = look_at_can(interface_);
-  if (found.index == 0 || !found.is_up) return false;
-  if (!is_bound_) is_bound_ = bind_to(socket_.get(), found.index);
-  return is_bound_;
+  const bool is_bound = found.index != 0 && found.is_up && set_filters(socket_.get(), node_) &&
+                        bind_to(socket_.get(), found.index);
+  if (!is_bound) return false;
+  int error = 0;
+  socklen_t size = sizeof error;
+  (void)getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
+  return true;
 }
 
 can::Link::Received SocketCan::failed(int error) noexcept {
-  const bool is_gone = error == ENODEV || error == ENXIO || error == EBADFD;
-  if (!is_gone && error != ENETDOWN) return {};
-  if (is_gone) is_bound_ = false;
+  if (!is_of_interface(error)) return {};
   is_down_ = true;
   return state(BusState::kOff);
 }
@@ -163,9 +171,7 @@ bool SocketCan::send(const can::Frame& frame) noexcept {
   raw.can_dlc = frame.size;
   std::copy_n(frame.data.begin(), frame.size, raw.data);
   if (::send(socket_.get(), &raw, sizeof raw, MSG_DONTWAIT) == sizeof raw) return true;
-  const bool is_off = errno == ENETDOWN || errno == ENODEV || errno == ENXIO;
-  if (!is_off) return false;  // ENOBUFS: the queue of the interface is full
-  if (errno != ENETDOWN) is_bound_ = false;
+  if (!is_of_interface(errno)) return false;  // ENOBUFS: the queue of the interface is full
   is_down_ = true;
   state_ = BusState::kOff;
   is_told_ = false;

@@ -32,11 +32,11 @@ class SocketCan final : public can::Link {
   [[nodiscard]] bool take_error_frame(std::uint32_t classes, std::uint8_t controller) noexcept;
 
   std::string interface_;
+  std::uint8_t node_;
   FileDescriptor socket_;
   can::BusState state_ = can::BusState::kActive;
   bool is_down_ = false;  ///< The interface, or it is gone: `state_` is kOff.
   bool is_told_ = false;  ///< That has been received.
-  bool is_bound_ = false;
   bool has_lost_frames_ = false;
   std::uint32_t drop_count_ = 0;  ///< As the kernel counts them.
 };
