@@ -9,6 +9,8 @@ import subprocess
 import sys
 import time
 
+from plc import ends_with_its_maker
+
 ADDRESS = "127.0.0.3"
 READ = struct.pack(">HHHBBHH", 7, 0, 6, 1, 4, 100, 90)
 
@@ -180,7 +182,7 @@ class Fault:
     """It goes on beside, in a process of its own."""
 
     def __init__(self, name, port):
-        self.process = subprocess.Popen([sys.executable, "-B", os.path.abspath(__file__), name, str(port)])
+        self.process = subprocess.Popen([sys.executable, "-B", os.path.abspath(__file__), name, str(port)], preexec_fn=ends_with_its_maker)
 
     def __enter__(self):
         return self

@@ -1,4 +1,5 @@
 """The daemon as a process, and a PLC of raw sockets: for the soak and for the tests of faults."""
+import ctypes
 import json
 import os
 import re
@@ -26,9 +27,15 @@ def wait_until(holds, what="it"):
         time.sleep(0.005)
 
 
+def ends_with_its_maker():
+    """Between fork and exec: however the maker ends, nothing of it is left running."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
 class Daemon:
     def __init__(self, program, config_path, *args):
-        self.process = subprocess.Popen([program, "--config", config_path, *args], stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen([program, "--config", config_path, *args], stderr=subprocess.PIPE, text=True,
+                                        preexec_fn=ends_with_its_maker)
         self.log = ""
         for line in self.process.stderr:
             self.log += line
