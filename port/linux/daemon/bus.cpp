@@ -112,6 +112,11 @@ std::int64_t Bus::next_us() const noexcept {
 }
 
 void Bus::take_events() noexcept {
+  if (const job::JobTable* const jobs = engine_.shelf().offered()) {
+    pass_on(machine_.process(clock_.now_us(), {.jobs = jobs}));
+    engine_.shelf().adopt();
+    engine_.ring();
+  }
   for (int i = 0; i < kEventsPerTurn && engine_.take(event_); ++i) {
     pass_on(machine_.process(clock_.now_us(), {.event = &event_}));
     if (event_.kind == job::SearchEvent::Kind::kFinished)

@@ -1,6 +1,7 @@
 #include "port/linux/daemon/config.hpp"
 
 #include "port/linux/daemon/section.hpp"
+#include "port/linux/files/atomic_file.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -21,10 +22,15 @@ Config read_config(Section file) {
 
 }  // namespace
 
-Config load_config(const std::string& path) { return read_config(Section::of_file(path)); }
+Config load_config(const std::string& path) {
+  const std::vector<std::byte> bytes = port::read_file(path, kConfigBytesMax);
+  return parse_config(path, port::as_text(bytes));
+}
 
 Config parse_config(const std::string& path, std::string_view text) {
-  return read_config(Section::of_text(path, text));
+  Config config = read_config(Section::of_text(path, text));
+  config.text = text;
+  return config;
 }
 
 }  // namespace flatpose::daemon

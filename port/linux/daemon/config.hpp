@@ -97,6 +97,7 @@ struct JobConfig {
 };
 
 struct Config {
+  std::string text;  ///< The file's own.
   SearchConfig search;
   port::RealtimeConfig realtime;
   ModbusConfig modbus;

@@ -17,6 +17,7 @@
 #include "port/linux/daemon/config.hpp"
 #include "port/linux/daemon/job_set.hpp"
 #include "port/linux/daemon/log.hpp"
+#include "port/linux/daemon/reloader.hpp"
 #include "port/linux/daemon/search_engine.hpp"
 #include "port/linux/daemon/service.hpp"
 #include "port/linux/daemon/stop_signal.hpp"
@@ -78,11 +79,16 @@ Config config_of(const Options& options) {
 
 /// Until a signal ends it. The service manager hears that the daemon lives only as long as the
 /// search thread answers and the bus goes round.
-void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal) {
+void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal, Reloader& reloader) {
+  constexpr std::chrono::microseconds kReloadStep(2000);
   const auto interval = alive_interval();
   std::uint32_t turns = 0;
   std::uint32_t asked = engine.ask();
-  while (!signal.wait_for(interval)) {
+  for (;;) {
+    const Signal came = signal.wait_for(reloader.is_busy() ? kReloadStep : interval);
+    if (came == Signal::kStop) return;
+    if (came == Signal::kReload) reloader.ask();
+    reloader.step();
     const bool is_bus_alive = bus == nullptr || std::exchange(turns, bus->turns()) != bus->turns();
     if (!engine.has_answered(asked) || !is_bus_alive) continue;
     tell_alive();
@@ -113,28 +119,30 @@ std::uint16_t counted_boots(const RecordsConfig& records, Log& log) {
 
 void run_service(const Options& options, const Config& config, std::ostream& err,
                  const std::string& root) {
-  const JobSet jobs = load_jobs(config);
+  const auto set = std::make_shared<const JobSet>(load_jobs(config));
   check_memory(options.config_path, config, root);
   Log events(err);
   StopSignal signal;              // before there are threads, which inherit what is blocked
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
-  SearchEngine engine(config, jobs, events);
+  SearchEngine engine(config, set, events);
   std::unique_ptr<Bus> bus;
   const std::uint16_t boots = counted_boots(config.records, events);
   if (config.modbus.is_on || config.can.is_on)
-    bus = std::make_unique<Bus>(config, jobs.rules(), engine, boots);
+    bus = std::make_unique<Bus>(config, set->rules(), engine, boots);
   const port::ProcessSetup setup(config.realtime, root);
   log(events, setup.steps());
   engine.start();
   log(events, engine.steps());
   if (bus) bus->start();
-  warn(config, jobs, events);
+  warn(config, *set, events);
   const std::string state = threads_text(config.search) + ", " +
                             std::to_string(held_bytes(config) >> 20) + " MB" +
                             (bus ? "; " + bus->name() : std::string());
   tell_ready(state);
   events.line("ready: " + state);
-  serve(engine, bus.get(), signal);
+  Reloader reloader(
+      config, [&options] { return config_of(options); }, engine, bus != nullptr, events);
+  serve(engine, bus.get(), signal, reloader);
   tell_stopping();
   bus.reset();
   events.line("ended");

@@ -55,7 +55,7 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   result_.answer = Answer::kPending;
   outside_count_ = 0;
   trace_.clear();
-  job_ = set_.find(order.job);
+  job_ = set_->find(order.job);
   if (job_ == nullptr) {
     result_.answer = Answer::kBadJob;
     return result_;
@@ -80,18 +80,18 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   if (!job::may_have_pose(result_.answer)) result_.match_count = 0;
   if (result_.match_count > 0) {
     const auto best = static_cast<std::size_t>(result_.matches[0].part - 1);
-    result_.part_hash = set_.parts[static_cast<std::size_t>(job_->config.parts[best])].hash;
+    result_.part_hash = set_->parts[static_cast<std::size_t>(job_->config.parts[best])].hash;
   }
   result_.cycle_us = time_since(start_us_, host);
   return result_;
 }
 
 std::size_t JobSearch::place_of(const Job& job) const noexcept {
-  return static_cast<std::size_t>(&job - set_.jobs.data());
+  return static_cast<std::size_t>(&job - set_->jobs.data());
 }
 
 bool JobSearch::can_verify(const job::Order& order) const noexcept {
-  const Job* const job = set_.find(order.job);
+  const Job* const job = set_->find(order.job);
   return job != nullptr && job->alignment.work_T_scan.has_value();
 }
 
@@ -99,7 +99,7 @@ job::ScanResult JobSearch::verify(const job::Order& order, const HeldScan& scan,
                                   const Host& host, std::string& told) noexcept {
   result_ = {};
   const std::int64_t start_us = host.clock.now_us();
-  const Job* const job = set_.find(order.job);
+  const Job* const job = set_->find(order.job);
   if (job == nullptr) {
     result_.answer = Answer::kBadJob;
     return result_;
@@ -111,7 +111,7 @@ job::ScanResult JobSearch::verify(const job::Order& order, const HeldScan& scan,
   result_.answer = check_plane(*job, scan, arena, host, end_us, told);
   result_.cycle_us = time_since(start_us, host);
   if (result_.answer != Answer::kOk && result_.answer != Answer::kAlignmentMoved) return result_;
-  for (const Job& other : set_.jobs) {
+  for (const Job& other : set_->jobs) {
     if (other.alignment.work_file == job->alignment.work_file)
       has_moved_[place_of(other)] = result_.answer == Answer::kAlignmentMoved;
   }
@@ -132,7 +132,7 @@ void JobSearch::search_part(int part, int index, const job::Order& order, const 
   config.deadline_us = std::max<std::int64_t>(end_us - now_us, 1);
   // What lies outside takes no place from what lies inside.
   if (job_->config.report.limits != PoseLimits{}) config.max_matches = job::kMatchesPerScanMax;
-  const Part& searched = set_.parts[static_cast<std::size_t>(part)];
+  const Part& searched = set_->parts[static_cast<std::size_t>(part)];
   const Status status = locator_.locate(*searched.model, scan.view, frames_, config, host, *found_);
   Answer answer = answer_of_fault(status);
   if (status == Status::kOk) {

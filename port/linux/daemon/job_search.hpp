@@ -20,7 +20,14 @@ class JobSearch {
  public:
   /// Refers to both, which must outlive it.
   JobSearch(const JobSet& set, locate::Locator& locator)
-      : set_(set), locator_(locator), found_(std::make_unique<locate::LocateResult>()) {}
+      : set_(&set), locator_(locator), found_(std::make_unique<locate::LocateResult>()) {}
+
+  /// Another set: what was verified in the old one is forgotten.
+  void use(const JobSet& set) noexcept {
+    if (set_ == &set) return;
+    set_ = &set;
+    has_moved_ = {};
+  }
 
   /// Until the order's time is over, or the host cancels.  Memory: none.  Fails: never, see answer.
   [[nodiscard]] job::ScanResult run(const job::Order& order, const HeldScan& scan,
@@ -45,7 +52,7 @@ class JobSearch {
   [[nodiscard]] std::size_t place_of(const Job& job) const noexcept;
   [[nodiscard]] job::Answer without_match() const noexcept;
 
-  const JobSet& set_;
+  const JobSet* set_;
   locate::Locator& locator_;
   std::unique_ptr<locate::LocateResult> found_;
   const Job* job_ = nullptr;

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -39,14 +40,15 @@ job::ScanResult result_of(const HeldScan* scan, Answer answer) noexcept {
 
 }  // namespace
 
-SearchEngine::SearchEngine(const Config& config, const JobSet& jobs, Log& log)
+SearchEngine::SearchEngine(const Config& config, std::shared_ptr<const JobSet> jobs, Log& log)
     : config_(config),
       log_(log),
       arena_(search_arena_bytes(config.search.limits)),
       buffers_{port::PrefaultedMemory(scan_buffer_bytes(config.search.limits)),
                port::PrefaultedMemory(scan_buffer_bytes(config.search.limits))},
       event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      search_(jobs, locator_) {
+      shelf_(std::move(jobs)),
+      search_(shelf_.use(0), locator_) {
   if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
   const Status status = locator_.init(config.search.limits, arena_.span());
   if (status != Status::kOk)
@@ -87,7 +89,7 @@ std::uint32_t SearchEngine::ask() noexcept {
 void SearchEngine::give(const job::Order& order) noexcept {
   in_force_.store(
       order.ticket);  // first: a search that finds it not yet in force would end at once
-  orders_.put(order);
+  orders_.put({order, shelf_.generation()});
   bell_.ring();
 }
 
@@ -116,10 +118,13 @@ void SearchEngine::work() noexcept {
   while (!is_over_.load()) {
     const std::uint32_t seen = bell_.seen();
     answer_asker();
-    job::Order order;
-    if (orders_.take(order)) {
-      execute(order);
+    const std::uint32_t generation = shelf_.generation();  // before looking for orders of an older
+    Given given;
+    if (orders_.take(given)) {
+      search_.use(shelf_.use(given.generation));
+      execute(given.order);
     } else {
+      search_.use(shelf_.use(generation));
       bell_.wait(seen);
     }
   }
@@ -149,7 +154,7 @@ void SearchEngine::execute(const job::Order& order) noexcept {
     }
     case Command::kVerifyAlignment: return verify(order, replaced);
     case Command::kSaveScan: return finish(order, save_scan(order, replaced));
-    case Command::kReloadJobs: return finish(order, Answer::kJobsRefused);
+    case Command::kReloadJobs: return finish(order, reload(order, replaced));
     case Command::kReportPick: finish(order, Answer::kOk); return report_pick(order);
     default: return finish(order, Answer::kInternal);
   }
@@ -189,6 +194,26 @@ void SearchEngine::verify(const job::Order& order, const Cancel& replaced) noexc
   result.alignment_hash = found.alignment_hash;
   finish(order, result);
   if (!told.empty()) note("command " + std::to_string(order.number) + ": " + told);
+}
+
+// Another thread reads the files; this one makes room for what comes, and waits.
+Answer SearchEngine::reload(const job::Order& order, const Cancel& replaced) noexcept {
+  reload_answer_.store(0);
+  reload_asked_.store(order.ticket);
+  (void)::kill(::getpid(), SIGHUP);
+  while (!replaced.is_asked_for()) {
+    const std::uint32_t seen = bell_.seen();
+    answer_asker();
+    search_.use(shelf_.use(shelf_.generation()));
+    const std::uint64_t answer = reload_answer_.load();
+    if (answer >> 1 == order.ticket) {
+      reload_asked_.store(0);
+      return (answer & 1) != 0 ? Answer::kOk : Answer::kJobsRefused;
+    }
+    bell_.wait(seen);
+  }
+  reload_asked_.store(0);
+  return Answer::kCancelled;
 }
 
 // The scan of this trigger; null when it could not be read or nobody wants it any more.

@@ -22,6 +22,7 @@
 #include "port/linux/daemon/config.hpp"
 #include "port/linux/daemon/job_search.hpp"
 #include "port/linux/daemon/job_set.hpp"
+#include "port/linux/daemon/job_shelf.hpp"
 #include "port/linux/daemon/log.hpp"
 #include "port/linux/daemon/mailbox.hpp"
 #include "port/linux/daemon/recorder.hpp"
@@ -36,9 +37,9 @@ namespace flatpose::daemon {
 
 class SearchEngine {
  public:
-  /// Takes the memory. Refers to jobs and log, which must outlive it.  Fails: std::bad_alloc,
+  /// Takes the memory. Refers to the log, which must outlive it.  Fails: std::bad_alloc,
   /// std::system_error, std::runtime_error when the library refuses the limits.
-  SearchEngine(const Config& config, const JobSet& jobs, Log& log);
+  SearchEngine(const Config& config, std::shared_ptr<const JobSet> jobs, Log& log);
   ~SearchEngine();
   SearchEngine(const SearchEngine&) = delete;
   SearchEngine& operator=(const SearchEngine&) = delete;
@@ -67,6 +68,21 @@ class SearchEngine {
   void note_posted(std::uint32_t ticket, std::int64_t now_us) noexcept {
     if (recorder_) recorder_->note_posted(ticket, now_us);
   }
+  /// The bus's thread: where the table of new jobs lies when there is one. Orders given after it
+  /// was adopted are of the new set.
+  [[nodiscard]] JobShelf& shelf() noexcept { return shelf_; }
+
+  /// Who loads jobs: the ticket of the command that asks for it; 0: none does.
+  [[nodiscard]] std::uint32_t asked_to_reload() const noexcept { return reload_asked_.load(); }
+  /// Who loads jobs: how that command ended.
+  void answer_reload(std::uint32_t ticket, bool is_done) noexcept {
+    reload_answer_.store(std::uint64_t{ticket} << 1 | (is_done ? 1U : 0U));
+    bell_.ring();
+  }
+  /// Any thread: the search looks whether there is something new.
+  void ring() noexcept { bell_.ring(); }
+  /// Any thread.
+  void wake_bus() const noexcept;
   /// An eventfd that is readable when there is something to take.
   [[nodiscard]] int event() const noexcept { return event_.get(); }
 
@@ -91,6 +107,7 @@ class SearchEngine {
   void stop() noexcept;
   void execute(const job::Order& order) noexcept;
   void verify(const job::Order& order, const Cancel& replaced) noexcept;
+  [[nodiscard]] job::Answer reload(const job::Order& order, const Cancel& replaced) noexcept;
   void locate(const job::Order& order, const HeldScan* scan, const Cancel& replaced) noexcept;
   [[nodiscard]] const HeldScan* next_scan(const job::Order& order, const Cancel& replaced) noexcept;
   void finish(const job::Order& order, const job::ScanResult& result) noexcept;
@@ -102,7 +119,6 @@ class SearchEngine {
   void report_pick(const job::Order& order) noexcept;
   void say_for_certain() noexcept;
   void answer_asker() noexcept;
-  void wake_bus() const noexcept;
   void note(const std::string& text) noexcept;
 
   const Config config_;
@@ -112,9 +128,14 @@ class SearchEngine {
   std::array<port::PrefaultedMemory, kScanBufferCount> buffers_;
   port::FileDescriptor event_;
   locate::Locator locator_;
+  JobShelf shelf_;
   JobSearch search_;
   Doorbell bell_;
-  Latest<job::Order> orders_;
+  struct Given {
+    job::Order order;
+    std::uint32_t generation = 0;  ///< Of the jobs that it was accepted under.
+  };
+  Latest<Given> orders_;
   Queue<job::SearchEvent, 8> events_;
   job::SearchEvent said_;  ///< The search thread's: an event is some kilobytes.
   std::unique_ptr<ScanSource> source_;
@@ -128,7 +149,9 @@ class SearchEngine {
   std::atomic<std::uint32_t> in_force_{0};  ///< The ticket.
   std::atomic<std::uint32_t> asked_{0};
   std::atomic<std::uint32_t> answered_{0};
-  std::uint32_t heard_ = 0;  ///< The bus's: which answer was the last.
+  std::atomic<std::uint32_t> reload_asked_{0};   ///< The ticket; 0: nobody asks.
+  std::atomic<std::uint64_t> reload_answer_{0};  ///< Twice the ticket, one more when it was done.
+  std::uint32_t heard_ = 0;                      ///< The bus's: which answer was the last.
   std::thread thread_;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include "port/linux/daemon/spelling.hpp"
 #include "port/linux/files/atomic_file.hpp"
@@ -244,6 +245,36 @@ void Section::fail(const std::string& key, const std::string& what,
   const toml::node* const node = place_->table == nullptr ? nullptr : place_->table->get(key);
   if (node != nullptr) place_->refuse(*node, what, remedy);
   place_->refuse(place_->line, what, remedy);
+}
+
+namespace {
+
+std::string written(const toml::node& node) {
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node);
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<std::string> changed_tables(std::string_view before, std::string_view after,
+                                        const std::vector<std::string>& but) {
+  const toml::table a = toml::parse(before);
+  const toml::table b = toml::parse(after);
+  std::vector<std::string> changed;
+  const auto note = [&](const toml::table& one, const toml::table& other, bool only_missing) {
+    for (const auto& [key, node] : one) {
+      const std::string name(key.str());
+      if (std::find(but.begin(), but.end(), name) != but.end()) continue;
+      const toml::node* const counterpart = other.get(name);
+      const bool differs =
+          counterpart == nullptr || (!only_missing && written(node) != written(*counterpart));
+      if (differs) changed.push_back(name);
+    }
+  };
+  note(a, b, false);
+  note(b, a, true);
+  return changed;
 }
 
 }  // namespace flatpose::daemon

@@ -63,4 +63,9 @@ class Section {
   std::shared_ptr<Place> place_;
 };
 
+/// Names the tables and values at the top of two sound configs that differ, but for those named.
+[[nodiscard]] std::vector<std::string> changed_tables(std::string_view before,
+                                                      std::string_view after,
+                                                      const std::vector<std::string>& but);
+
 }  // namespace flatpose::daemon

@@ -10,17 +10,20 @@ StopSignal::StopSignal() noexcept {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGTERM);
   sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
 }
 
 StopSignal::~StopSignal() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-bool StopSignal::wait_for(std::optional<std::chrono::microseconds> time) noexcept {
+Signal StopSignal::wait_for(std::optional<std::chrono::microseconds> time) noexcept {
   constexpr std::int64_t kUsPerS = 1'000'000;
   timespec limit{};
   if (time) limit = {time->count() / kUsPerS, 1000 * (time->count() % kUsPerS)};
   // Another signal that is handled ends the wait early; the caller comes back.
-  return sigtimedwait(&signals_, nullptr, time ? &limit : nullptr) > 0;
+  const int signal = sigtimedwait(&signals_, nullptr, time ? &limit : nullptr);
+  if (signal <= 0) return Signal::kNone;
+  return signal == SIGHUP ? Signal::kReload : Signal::kStop;
 }
 
 }  // namespace flatpose::daemon

@@ -1,5 +1,5 @@
 #pragma once
-// SIGTERM and SIGINT as something to wait for.
+// SIGTERM, SIGINT and SIGHUP as something to wait for.
 
 #include <signal.h>
 
@@ -7,6 +7,8 @@
 #include <optional>
 
 namespace flatpose::daemon {
+
+enum class Signal { kNone, kStop, kReload };
 
 class StopSignal {
  public:
@@ -17,8 +19,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// False when the time is over; without one it waits for ever.
-  [[nodiscard]] bool wait_for(std::optional<std::chrono::microseconds> time) noexcept;
+  /// kNone when the time is over; without one it waits for ever.
+  [[nodiscard]] Signal wait_for(std::optional<std::chrono::microseconds> time) noexcept;
 
  private:
   sigset_t signals_;

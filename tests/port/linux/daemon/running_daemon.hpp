@@ -80,6 +80,7 @@ class RunningDaemon {
     waitpid(std::exchange(pid_, 0), &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
+  void signal(int signal) const { kill(pid_, signal); }
   /// All of it after stop().
   [[nodiscard]] const std::string& log() const { return log_; }
 

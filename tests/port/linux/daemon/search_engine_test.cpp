@@ -36,7 +36,7 @@ class Engine : public testing::Test {
  protected:
   Engine()
       : config_(parse_config(FLATPOSE_EXAMPLE "/f.toml", kConfig)),
-        jobs_(load_jobs(config_)),
+        jobs_(std::make_shared<const JobSet>(load_jobs(config_))),
         log_(lines_),
         engine_(std::make_unique<SearchEngine>(config_, jobs_, log_)) {
     engine_->start();
@@ -64,7 +64,7 @@ class Engine : public testing::Test {
   }
 
   Config config_;
-  JobSet jobs_;
+  std::shared_ptr<const JobSet> jobs_;
   std::ostringstream lines_;
   Log log_;
   std::unique_ptr<SearchEngine> engine_;

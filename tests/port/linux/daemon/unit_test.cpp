@@ -38,4 +38,6 @@ TEST(Unit, MakesTheFolderOfTheCamerasSocket) {
   EXPECT_TRUE(may_use_unix);
 }
 
+TEST(Unit, ReloadsJobsBySighup) { EXPECT_TRUE(has("ExecReload=/bin/kill -HUP $MAINPID")); }
+
 }  // namespace
