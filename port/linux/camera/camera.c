@@ -147,7 +147,8 @@ static flatpose_camera_status take_memory(flatpose_camera* camera, int memory_fd
                       (uint64_t)state.st_size == memory_bytes &&
                       (fcntl(memory_fd, F_GET_SEALS) & wanted) == wanted;
   if (!is_ours) return FLATPOSE_CAMERA_BAD_DAEMON;
-  void* const at = mmap(NULL, memory_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, memory_fd, 0);
+  void* const at =
+      mmap(NULL, memory_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, memory_fd, 0);
   if (at == MAP_FAILED) return FLATPOSE_CAMERA_BAD_DAEMON;
   camera->memory = at;
   camera->memory_bytes = memory_bytes;

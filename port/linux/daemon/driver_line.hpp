@@ -42,6 +42,8 @@ class DriverLine {
   [[nodiscard]] std::int64_t heard_us() const noexcept { return heard_us_; }
 
   [[nodiscard]] Heard hear(DriverMessage& message, std::int64_t now_us) noexcept;
+  /// One message more is no flood: the answer to a request.
+  void expect_answer() noexcept { --count_; }
   /// Whether it was sent whole: a driver that does not read is no use. `file`: goes with it.
   bool say(const void* message, std::size_t bytes, int file = -1) const noexcept;
   bool say_refused(std::string_view reason) const noexcept;

@@ -1,7 +1,8 @@
 #include "port/linux/daemon/driver_scan.hpp"
 
-#include <cmath>
+#include <bit>
 #include <cstring>
+#include <limits>
 
 #include "port/linux/daemon/scan_file.hpp"
 #include "port/linux/files/scan.hpp"
@@ -61,12 +62,17 @@ void copy_row(const std::byte* x, const std::byte* y, const std::byte* z, std::s
   }
 }
 
-/// NaN is missing, and legal.
+/// NaN is missing, and legal. In whole numbers, which order floats without a sign as they are and
+/// are compared many at a time.
 bool has_absurd(std::span<const float> row) noexcept {
-  constexpr auto kMost_mm = static_cast<float>(port::kCoordinateMax_mm);
-  bool has = false;
-  for (const float value_mm : row) has |= std::fabs(value_mm) > kMost_mm;
-  return has;
+  constexpr auto kMost = std::bit_cast<std::int32_t>(static_cast<float>(port::kCoordinateMax_mm));
+  constexpr auto kInfinite = std::bit_cast<std::int32_t>(std::numeric_limits<float>::infinity());
+  int has = 0;
+  for (const float value_mm : row) {
+    const std::int32_t bits = std::bit_cast<std::int32_t>(value_mm) & 0x7fffffff;
+    has |= static_cast<int>(bits > kMost) & static_cast<int>(bits <= kInfinite);
+  }
+  return has != 0;
 }
 
 }  // namespace

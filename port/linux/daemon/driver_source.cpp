@@ -155,6 +155,7 @@ void DriverSource::begin(const ScanOrder& order) {
   capture.job = order.job;
   capture.accepted_us = order.accepted_us;
   capture.answer_by_us = order.answer_by_us;
+  driver_.expect_answer();
   if (!driver_.say(&capture, sizeof capture)) lose_driver("it does not read");
 }
 

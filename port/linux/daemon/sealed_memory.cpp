@@ -17,7 +17,7 @@ SealedMemory::SealedMemory(std::size_t size_bytes)
   if (!file_.is_open() || ftruncate(file(), size) != 0) fail();
   if (fallocate(file(), 0, 0, size) != 0) fail();
   if (fcntl(file(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) fail();
-  void* const at = mmap(nullptr, size_bytes, PROT_READ, MAP_SHARED, file(), 0);
+  void* const at = mmap(nullptr, size_bytes, PROT_READ, MAP_SHARED | MAP_POPULATE, file(), 0);
   if (at == MAP_FAILED) fail();
   bytes_ = static_cast<const std::byte*>(at);
 }

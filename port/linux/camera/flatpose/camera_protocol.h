@@ -35,7 +35,8 @@
 #define FLATPOSE_CAMERA_ALIVE_PERIOD_MS 500
 #define FLATPOSE_CAMERA_ALIVE_LIMIT_MS 2000
 #define FLATPOSE_CAMERA_HELLO_LIMIT_MS 1000         /* from connect to hello */
-#define FLATPOSE_CAMERA_MESSAGES_PER_SECOND_MAX 200 /* more is taken for a defect */
+#define FLATPOSE_CAMERA_MESSAGES_PER_SECOND_MAX 200 /* beside answers; more is taken for a defect \
+                                                     */
 
 #define FLATPOSE_CAMERA_NAME_BYTES 64
 #define FLATPOSE_CAMERA_REASON_BYTES 160

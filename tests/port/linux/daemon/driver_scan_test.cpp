@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -77,6 +78,30 @@ TEST(DriverScan, IsCopiedFromEveryLayoutAsItStands) {
         ASSERT_EQ(std::isnan(p.z) ? -1.0 : p.z, std::isnan(expected[2]) ? -1.0 : expected[2]);
       }
     }
+  }
+}
+
+TEST(DriverScan, NoCoordinateLiesBeyondAKilometre) {
+  const float most = 1e6F;
+  const float inf = std::numeric_limits<float>::infinity();
+  const std::vector<float> sound{0.0F, -0.0F, most, -most, 1e-40F, kMissing, -kMissing};
+  const std::vector<float> absurd{std::nextafter(most, inf), -std::nextafter(most, inf), inf, -inf,
+                                  std::numeric_limits<float>::max()};
+  std::vector<float> memory(12);
+  flatpose_camera_done_message done{};
+  done.width_px = done.height_px = 2;
+  done.y_offset_bytes = 4;
+  done.z_offset_bytes = 8;
+  done.pixel_stride_bytes = 12;
+  done.row_stride_bytes = 24;
+  Buffers buffers;
+  for (float& place : memory) {
+    const auto fault_with = [&](float value) {
+      place = value;
+      return copy_points(done, std::as_bytes(std::span(memory)), buffers.handover.blank());
+    };
+    for (const float value : absurd) EXPECT_NE(fault_with(value), "") << value;
+    for (const float value : sound) EXPECT_EQ(fault_with(value), "") << value;
   }
 }
 

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "port/linux/daemon/daemon.hpp"
+#include "port/linux/daemon/driver_source.hpp"
 #include "tests/port/linux/daemon/test_driver.hpp"
 #include "tests/port/linux/files/temporary_folder.hpp"
 
@@ -463,6 +464,34 @@ TEST_F(Driver, IsToldOfTheDaemonsEndAndComesBackByItself) {
   serve(config);
   EXPECT_TRUE(is_ready());
   EXPECT_TRUE(plc_->trigger(1).has(job::kValid));
+}
+
+// Without a bus, so that it is faster than one.
+TEST_F(Driver, MayAnswerAsOftenAsItIsAsked) {
+  const Config config = load_config(write_config());
+  std::vector<float> one(3 * 400 * 333);
+  std::vector<float> two(3 * 400 * 333);
+  Doorbell bell;
+  std::ostringstream lines;
+  Log log(lines);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  DriverSource source(config, {std::span(one), std::span(two)}, bell, nowhere, log);
+  source.start();
+  TestDriver driver(socket());
+  port::Scan scan;
+  scan.xyz_mm.resize(12);
+  scan.width_px = scan.height_px = 2;
+  for (std::uint32_t ticket = 1; ticket <= 3 * FLATPOSE_CAMERA_MESSAGES_PER_SECOND_MAX; ++ticket) {
+    const std::int64_t now_us = flatpose_camera_now_us();
+    source.request({ticket, 1, 1, now_us, now_us + 600'000'000});
+    ASSERT_TRUE(driver.is_asked());
+    driver.answer(scan);
+    const HeldScan* held = nullptr;
+    while (held == nullptr) held = source.take(0);
+    ASSERT_EQ(held->failure, "") << ticket;
+    ASSERT_EQ(held->number, ticket);
+  }
+  close(nowhere);
 }
 
 std::string refusal_of(const std::string& config) {
