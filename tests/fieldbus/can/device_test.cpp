@@ -100,6 +100,22 @@ TEST(CanTrigger, TakesThePoseOfTheNumberBeforeBack) {
   EXPECT_FALSE(node.told(Field::kBits) & job::kValid);
 }
 
+// What docs/can.md works the bus's load out from.
+TEST(CanTrigger, CostsFourFramesAtAcceptanceAndFourAtTheResult) {
+  Node node({.heartbeat_ms = 0});
+  node.desk.live();
+  node.start();
+  for (std::uint16_t number = 1; number < 20; ++number) {
+    std::size_t accepted = node.rpdo(number).size();
+    for (int i = 0; i < 10; ++i) accepted += node.pass(kMs).size();
+    node.desk.finish(node.desk.found());
+    std::size_t told = 0;
+    for (int i = 0; i < 10; ++i) told += node.pass(kMs).size();
+    EXPECT_EQ(accepted, number == 1 ? 1U : 4U) << number;
+    EXPECT_EQ(told, 4U);
+  }
+}
+
 TEST(CanTrigger, OfAnAnswerWithoutPoseTellsTheStatusAlone) {
   Node node;
   node.desk.live();

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "flatpose/can/frame.hpp"
 
@@ -119,6 +122,22 @@ TEST(CanReport, TellsNothingOfAnothersResult) {
   EXPECT_EQ(report[Field::kBits], job::kReady | job::kBusy | job::kError | job::kSimulated);
   EXPECT_EQ(report[Field::kJudgedNumber], 12);
   EXPECT_EQ(report[Field::kRefusedStatus], 3);
+}
+
+TEST(CanReport, TheDocumentHasEveryFieldInItsPlace) {
+  std::ifstream file(std::string(FLATPOSE_SOURCE_DIR) + "/docs/can.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_GT(text.size(), 1000U);
+  for (int tpdo = 0; tpdo < kTpdoCount; ++tpdo) {
+    int at = 0;
+    for (const ReportField field : fields_of_tpdo(tpdo)) {
+      const ReportLine& line = line_of(field);
+      const std::string row = "| TPDO" + std::to_string(tpdo + 1) + " | " + std::to_string(at) +
+                              " | `" + line.name + "` | " + std::to_string(line.bytes) + " | ";
+      EXPECT_NE(text.find(row), std::string::npos) << row;
+      at += line.bytes;
+    }
+  }
 }
 
 TEST(CanReport, EveryStatusFitsItsByte) {

@@ -17,6 +17,7 @@ import time
 import unittest
 
 import can
+import canmatrix.formats
 
 FLATPOSED, SOURCE_DIR = sys.argv[2], pathlib.Path(sys.argv[3])
 EXAMPLE = SOURCE_DIR / "build/example"
@@ -264,6 +265,28 @@ class Pose(Guest):
         self.assertEqual(over_sdo, master.whole_pose(), "the registers' scale is that of the PDOs")
         whole = master.read(0x2011, 0)
         self.assertEqual(struct.unpack_from("<HHh", whole), (master.number(0x2010, 1), 1, 0))
+
+    def test_is_what_canmatrix_reads_by_the_dbc(self):
+        (matrix,) = canmatrix.formats.loadp(str(SOURCE_DIR / "docs/can/flatpose.dbc")).values()
+        master, raw = self.master, {}
+        see = master.see
+
+        def keep(message):
+            see(message)
+            raw[message.arbitration_id] = bytes(message.data)
+
+        master.see = keep
+        master.start()
+        master.trigger(1)
+        values = {}
+        for cob_id in (0x18A, 0x28A, 0x38A, 0x48A):
+            frame = matrix.frame_by_id(canmatrix.ArbitrationId(cob_id, extended=False))
+            values |= {name: float(signal.phys_value) for name, signal in frame.decode(raw[cob_id]).items()}
+        names = ("position_x", "position_y", "position_z", "rotation_1", "rotation_2", "rotation_3")
+        self.assert_pose([round(1000 * values[name]) for name in names])
+        self.assertEqual([values[f"sequence_{i}"] for i in range(4)], 4 * [values["sequence_0"]])
+        self.assertEqual((values["done_number"], values["bit_valid"], values["bit_simulated"]), (1, 1, 1))
+        self.assertGreater(values["score"], 0.8)
 
     def test_is_asked_for_by_the_whole_command_too(self):
         master = self.master
