@@ -193,6 +193,7 @@ void SearchEngine::verify(const job::Order& order, const Cancel& replaced) noexc
   result.cycle_us = found.cycle_us;
   result.alignment_hash = found.alignment_hash;
   finish(order, result);
+  keep(order, result, scan, false);
   if (!told.empty()) note("command " + std::to_string(order.number) + ": " + told);
 }
 

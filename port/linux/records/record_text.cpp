@@ -160,7 +160,10 @@ std::string record_json(const Record& record, const RecordName& name) {
   Json json;
   json["status"] = job::to_string(record.result.answer);
   json["matches"] = Json::array();
-  if (record.trace.part_count > 0) json = searched_json(record);
+  if (record.trace.part_count > 0) {
+    json = searched_json(record);
+    json["frame"] = job::name_of(job::frame_names(), static_cast<int>(record.result.frame));
+  }
   json["status"] = job::to_string(record.result.answer);
   add_asked(json, record, name);
   json["told"] = told_json(record.result);

@@ -12,16 +12,94 @@ import time
 
 PATIENCE_S = 60
 
+# Where the scan lies in the robot's frame: a third of a turn about the diagonal, then moved.
+ROBOT_R_SCAN = [0, 0, 1, 1, 0, 0, 0, 1, 0]
+ROBOT_T_SCAN_MM = [812.5, -240.25, 655.0]
+
+
+def times(a, b):
+    """Of two matrices by rows."""
+    return [sum(a[3 * i + k] * b[3 * k + j] for k in range(3)) for i in range(3) for j in range(3)]
+
+
+def about(axis, degrees):
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return {"x": [1, 0, 0, 0, c, -s, 0, s, c], "y": [c, 0, s, 0, 1, 0, -s, 0, c], "z": [c, -s, 0, s, c, 0, 0, 0, 1]}[axis]
+
+
+def by_angles(axes, angles):
+    result = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    for axis, angle in zip(axes, angles):
+        result = times(result, about(axis, angle))
+    return result
+
+
+def by_quaternion(w, x, y, z):
+    return [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+            2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+            2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
+
+
+def by_vector(x, y, z):
+    angle = math.sqrt(x * x + y * y + z * z)
+    if angle == 0:
+        return by_quaternion(1, 0, 0, 0)
+    s = math.sin(angle / 2) / angle
+    return by_quaternion(math.cos(angle / 2), s * x, s * y, s * z)
+
+
+# As the controllers' manuals have it: what a robot would make of the four numbers.
+CONVENTIONS = {
+    "kuka_abc": lambda n: by_angles("zyx", n[:3]),
+    "fanuc_wpr": lambda n: by_angles("zyx", n[2::-1]),
+    "ur_rotation_vector": lambda n: by_vector(*n[:3]),
+    "abb_quaternion": lambda n: by_quaternion(*n),
+    "staubli_xyz": lambda n: by_angles("xyz", n[:3]),
+    "zyz": lambda n: by_angles("zyz", n[:3]),
+}
+OF_ANGLES = {"kuka_abc", "fanuc_wpr", "staubli_xyz", "zyz"}
+
+
+class Frames:
+    """Files of the work plane and of the robot's frame, a job for each frame and convention, and what each must tell."""
+
+    def __init__(self, flatpose, files, folder):
+        self.work, self.robot, pairs = folder + "/work.json", folder + "/robot.json", folder + "/pairs.csv"
+        run = lambda *words: subprocess.check_output([flatpose, *words])
+        run("align", files + "/scan.pcd", "-o", self.work)
+        with open(pairs, "w", encoding="ascii") as file:
+            file.write("scan_x,scan_y,scan_z,robot_x,robot_y,robot_z\n")
+            for p in ([0, 0, 0], [100, 0, 20], [0, 120, -10], [-80, -90, 40], [60, 70, 80]):
+                file.write(",".join(repr(float(c)) for c in p + self.to_robot(p)) + "\n")
+        run("align", "--touch", pairs, "-o", self.robot)
+        locate = lambda *more: json.loads(run("locate", files + "/pad.fpt", files + "/scan.pcd", "--json", *more))["matches"][0]
+        scan, work = locate(), locate("--work", self.work)
+        self.poses = {"scan": (scan["position_mm"], scan["rotation"]), "work": (work["position_mm"], work["rotation"]),
+                      "robot": (self.to_robot(scan["position_mm"]), times(ROBOT_R_SCAN, scan["rotation"]))}
+        self.jobs = {10 + i: (frame, convention)
+                     for i, (frame, convention) in enumerate((f, c) for f in self.poses for c in CONVENTIONS)}
+
+    @staticmethod
+    def to_robot(p):
+        return [sum(ROBOT_R_SCAN[3 * i + k] * p[k] for k in range(3)) + ROBOT_T_SCAN_MM[i] for i in range(3)]
+
+    def config(self):
+        named = {"scan": "", "work": f'work = "{self.work}"\n', "robot": f'alignment = "{self.robot}"\n'}
+        return "".join(f'[[job]]\nnumber = {number}\nparts = ["pad"]\nframe = "{frame}"\npose = "object"\n'
+                       f'convention = "{convention}"\n{named[frame]}' for number, (frame, convention) in self.jobs.items())
+
 
 class Daemon:
-    """The example's config as it stands, but for word order, port and who may connect."""
+    """The example's config as it stands, but for word order, port and who may connect, and with more jobs."""
 
-    def __init__(self, program, example, word_order, files):
+    def __init__(self, program, example, word_order, files, jobs):
         text = open(example, encoding="utf-8").read()
         for old, new in (('word_order = "ABCD"', f'word_order = "{word_order}"'), ('bind = "0.0.0.0"', 'bind = "127.0.0.1"'),
                          ("../../../build/example", files)):
             assert old in text, old
             text = text.replace(old, new)
+        assert "\n[search]" in text
+        text = text.replace("\n[search]", "\n" + jobs + "\n[search]", 1)
         self.config = tempfile.NamedTemporaryFile("w", suffix=".toml", encoding="utf-8")
         self.config.write(text)
         self.config.flush()
@@ -139,6 +217,36 @@ def check(client, registers, expected):
         assert abs(client.read(name + "_f") - value) <= 1e-6 * max(1.0, abs(value)) * 10, name + "_f"
 
 
+def six_digits(value):
+    """What mbpoll prints of a float."""
+    return 1e-5 * max(1.0, abs(value))
+
+
+def check_frames(client, frames, reads_floats):
+    """Every frame in every convention: what a robot makes of the numbers is where the part lies."""
+    number = 40
+    for job, (frame, convention) in frames.jobs.items():
+        number += 1
+        client.write("job", job)
+        client.write("command_number", number)
+        wait_until(lambda: client.read("done_number") == number)
+        assert client.read("status") == 0 and client.read("result_job") == job
+        position_mm, rotation = frames.poses[frame]
+        for axis, wanted in zip("xyz", position_mm):
+            assert abs(client.read("position_" + axis) * 0.001 - wanted) <= 0.000501 + 1e-6, (frame, axis)
+            if not reads_floats:
+                continue
+            assert abs(client.read(f"position_{axis}_f") - wanted) <= six_digits(wanted), (frame, axis)
+        scale = 0.001 if convention in OF_ANGLES else 1e-6
+        numbers = [client.read(f"rotation_{i}") * scale for i in (1, 2, 3, 4)]
+        floats = [client.read(f"rotation_{i}_f") for i in (1, 2, 3, 4)] if reads_floats else numbers
+        for i in range(3 + (convention == "abb_quaternion")):
+            assert abs(numbers[i] - floats[i]) <= 0.51 * scale + six_digits(floats[i]), (frame, convention, i)
+        turned = CONVENTIONS[convention](numbers)
+        assert max(abs(a - b) for a, b in zip(turned, rotation)) <= 5e-5, (frame, convention, turned, rotation)
+    assert number == 40 + 3 * 6
+
+
 def main():
     flatposed, flatpose, example, files, client_name, word_order = sys.argv[1:]
     registers = {r["name"]: r for r in json.loads(subprocess.check_output([flatpose, "map", "--format", "json"]))}
@@ -146,14 +254,20 @@ def main():
     expected = json.loads(subprocess.check_output(
         [flatpose, "locate", files + "/pad.fpt", files + "/scan.pcd", "--json", "--max-matches", "8"]))
     assert expected["status"] == "ok", expected
-    daemon = Daemon(flatposed, example, word_order, files)
+    with tempfile.TemporaryDirectory() as folder:
+        drive(flatposed, example, word_order, files, client_name, registers, expected, Frames(flatpose, files, folder))
+    print("agreed")
+
+
+def drive(flatposed, example, word_order, files, client_name, registers, expected, frames):
+    daemon = Daemon(flatposed, example, word_order, files, frames.config())
     try:
         client = {"pymodbus": Pymodbus, "mbpoll": Mbpoll}[client_name](daemon.port, registers, word_order)
         check(client, registers, expected)
+        check_frames(client, frames, reads_floats=client_name != "mbpoll")  # it takes a process for each
         client.end()
     finally:
         daemon.end()
-    print("agreed")
 
 
 main()
