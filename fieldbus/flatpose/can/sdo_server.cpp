@@ -54,20 +54,20 @@ SdoServer::Step SdoServer::take(const Frame& request, std::int64_t now_us) noexc
 
 SdoServer::Step SdoServer::begin_download(const Frame& request, std::int64_t now_us) noexcept {
   const std::uint8_t head = request.data[0];
-  size_is_told_ = (head & kSizeTold) != 0;
+  const bool size_is_told = (head & kSizeTold) != 0;
   is_segment_ = (head & kExpedited) == 0;
   if (!is_segment_) {
-    size_ = size_is_told_ ? kExpeditedBytes - (head >> 2 & 3) : kExpeditedBytes;
+    size_ = size_is_told ? kExpeditedBytes - (head >> 2 & 3) : kExpeditedBytes;
     std::copy_n(request.data.begin() + 4, kExpeditedBytes, buffer_.begin());
     return {Step::Kind::kWrite, index_,
             subindex_,          size_,
-            size_is_told_,      std::span(buffer_).first(size_)};
+            size_is_told,       std::span(buffer_).first(size_)};
   }
   const std::size_t told = number_at(request.data, 4, 4);
-  size_ = size_is_told_ ? std::min(told, kWriteBytesMax + 1) : 0;
+  size_ = size_is_told ? std::min(told, kWriteBytesMax + 1) : 0;
   begin(State::kDownload, now_us);
   answer_with_object(0x60);
-  return {Step::Kind::kProbe, index_, subindex_, size_, size_is_told_, {}};
+  return {Step::Kind::kProbe, index_, subindex_, size_, size_is_told, {}};
 }
 
 SdoServer::Step SdoServer::go_on_with_download(const Frame& request, std::int64_t now_us) noexcept {
@@ -88,10 +88,6 @@ SdoServer::Step SdoServer::go_on_with_download(const Frame& request, std::int64_
   if ((head & kLastSegment) == 0) {
     answer(with_toggle(0x20, toggle_));
     toggle_ = !toggle_;
-    return {};
-  }
-  if (size_is_told_ && place_ != size_) {
-    refuse(place_ > size_ ? Abort::kTooLong : Abort::kTooShort);
     return {};
   }
   return {Step::Kind::kWrite, index_, subindex_, place_, true, std::span(buffer_).first(place_)};

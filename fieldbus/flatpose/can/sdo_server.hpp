@@ -71,9 +71,8 @@ class SdoServer {
   State state_ = State::kIdle;
   std::uint16_t index_ = 0;
   std::uint8_t subindex_ = 0;
-  bool is_segment_ = false;    ///< What is being written came in segments.
-  bool toggle_ = false;        ///< That the next segment must have.
-  bool size_is_told_ = false;  ///< In the initiation of a download.
+  bool is_segment_ = false;  ///< What is being written came in segments.
+  bool toggle_ = false;      ///< That the next segment must have.
   std::size_t size_ = 0;
   std::size_t place_ = 0;
   std::array<std::uint8_t, kObjectBytesMax> buffer_{};

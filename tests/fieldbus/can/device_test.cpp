@@ -245,6 +245,7 @@ TEST(CanMasterHeartbeat, ItsLossCancelsAtOnceAndIsAnEmergency) {
   EXPECT_LE(node.device.next_us(), node.desk.now_us + kMs);
   node.pass(kMs);
   EXPECT_EQ(node.desk.order.kind, job::Order::Kind::kStop);
+  EXPECT_GT(node.device.next_us(), node.desk.now_us) << "a loss is told once";
   EXPECT_EQ(node.desk.see(kMaster).answer, job::Answer::kCancelled);
   EXPECT_EQ(node.device.state(), NetworkState::kPreOperational);
   EXPECT_EQ(node.last_emergency(), 0x8130);

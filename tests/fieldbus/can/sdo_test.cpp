@@ -178,6 +178,20 @@ TEST(CanSdo, TriggersByTheWholeCommandInSegments) {
   }
 }
 
+TEST(CanSdo, AbortsADownloadThatEndsBeforeOrAfterTheSizeItTold) {
+  Node node;
+  (void)node.sdo(Node::object(0x21, 0x2004, 0, 14));
+  EXPECT_EQ(node.abort_in(node.sdo({0x01, 1, 0, 0, 0, 1, 0, 1})), Abort::kTooShort);
+  (void)node.sdo(Node::object(0x21, 0x1017, 0, 2));
+  EXPECT_EQ(node.abort_in(node.sdo({0x01, 1, 0, 0, 0, 1, 0, 1})), Abort::kTooLong);
+  (void)node.sdo(Node::object(0x20, 0x2004, 0));
+  Bytes answer;
+  for (std::uint8_t toggle = 0; answer.empty() || answer[0] >> 5 == 1; toggle ^= 0x10)
+    answer = node.sdo({toggle, 1, 2, 3, 4, 5, 6, 7});
+  EXPECT_EQ(node.abort_in(answer), Abort::kTooLong) << "without end";
+  EXPECT_EQ(node.read(0x1017, 0), 1000U);
+}
+
 TEST(CanSdo, WritesSmallObjectsInSegmentsAndWithoutASizeToo) {
   Node node;
   EXPECT_EQ(node.write_all(0x1017, 0, {0x2c, 1}), Abort::kNone);
