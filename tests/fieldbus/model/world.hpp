@@ -114,6 +114,13 @@ class World {
     if (random_.one_in(6000))
       silent_until_us_[random_.below(2)] = now_us_ + random_.below(12) * kSecond_us;
     if (random_.one_in(5000)) hung_until_us_ = now_us_ + random_.below(8) * kSecond_us;
+    if (random_.one_in(5000)) lose_source();
+  }
+
+  // The camera's driver dies, whatever is going on; it comes back when the next sign of life does.
+  void lose_source() {
+    const job::SearchEvent event{job::SearchEvent::Kind::kSourceGone, 0, {}};
+    process({.event = &event});
   }
 
   void live() {
