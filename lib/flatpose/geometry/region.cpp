@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flatpose {
 namespace {
@@ -16,6 +17,33 @@ bool polygon_contains(const Region& r, double x, double y) noexcept {
     if (x < r.vertex_x_mm[i] + t * (r.vertex_x_mm[j] - r.vertex_x_mm[i])) inside = !inside;
   }
   return inside;
+}
+
+double segment_distance_mm(double ax, double ay, double bx, double by, double x,
+                           double y) noexcept {
+  const double dx = bx - ax;
+  const double dy = by - ay;
+  const double square = dx * dx + dy * dy;
+  const double along = square > 0.0 ? ((x - ax) * dx + (y - ay) * dy) / square : 0.0;
+  const double t = std::clamp(along, 0.0, 1.0);
+  const double off_x = x - ax - t * dx;
+  const double off_y = y - ay - t * dy;
+  return std::sqrt(off_x * off_x + off_y * off_y);
+}
+
+double polygon_border_distance_mm(const Region& r, double x, double y) noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0, j = r.vertex_count - 1; i < r.vertex_count; j = i++)
+    least = std::min(least, segment_distance_mm(r.vertex_x_mm[j], r.vertex_y_mm[j],
+                                                r.vertex_x_mm[i], r.vertex_y_mm[i], x, y));
+  return least;
+}
+
+double box_border_distance_mm(const Box& box, double x, double y) noexcept {
+  return std::min({segment_distance_mm(box.x0_mm, box.y0_mm, box.x1_mm, box.y0_mm, x, y),
+                   segment_distance_mm(box.x1_mm, box.y0_mm, box.x1_mm, box.y1_mm, x, y),
+                   segment_distance_mm(box.x1_mm, box.y1_mm, box.x0_mm, box.y1_mm, x, y),
+                   segment_distance_mm(box.x0_mm, box.y1_mm, box.x0_mm, box.y0_mm, x, y)});
 }
 
 // Whether every corner lies on one straight line, which a slanting one may do in a box of any size.
@@ -53,6 +81,20 @@ bool Region::contains(double x, double y) const noexcept {
     case Kind::kPolygon: return polygon_contains(*this, x, y);
   }
   return false;
+}
+
+double Region::border_distance_mm(double x, double y) const noexcept {
+  switch (kind) {
+    case Kind::kAll: break;
+    case Kind::kCircle: {
+      const double dx = x - x_mm;
+      const double dy = y - y_mm;
+      return std::fabs(std::sqrt(dx * dx + dy * dy) - radius_mm);
+    }
+    case Kind::kBox: return box_border_distance_mm(bounding_box(*this), x, y);
+    case Kind::kPolygon: return polygon_border_distance_mm(*this, x, y);
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 Box bounding_box(const Region& r) noexcept {

@@ -21,6 +21,8 @@ struct Region {
 
   /// Border included for circle and box; the even-odd rule for the polygon.
   [[nodiscard]] bool contains(double x, double y) const noexcept;
+  /// To the nearest point of the border, from either side; infinite without one.
+  [[nodiscard]] double border_distance_mm(double x, double y) const noexcept;
 };
 
 /// The smallest box around a region that is not kAll.

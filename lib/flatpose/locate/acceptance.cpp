@@ -86,7 +86,8 @@ void Acceptance::note_rival(double score, const Pose& work_T_object) noexcept {
 bool Acceptance::is_allowed(const Pose& work_T_object) const noexcept {
   if (arc_cosine(work_T_object.rotation.m[8]) > config_.max_tilt_rad) return false;
   const Vec3 origin_mm = (frames_.face_T_work * work_T_object).position_mm;
-  return config_.region.contains(origin_mm.x, origin_mm.y);
+  return config_.region.contains(origin_mm.x, origin_mm.y) &&
+         settings_.origins.admits(work_T_object.position_mm, 0.0);
 }
 
 Match Acceptance::to_match(const refine::PolishResult& polished,

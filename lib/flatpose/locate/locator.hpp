@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "flatpose/core/arena.hpp"
@@ -26,6 +27,7 @@
 namespace flatpose::locate {
 
 inline constexpr int kMatchCountMax = 64;
+inline constexpr int kExclusionCountMax = 16;
 
 /// What the memory must suffice for.
 struct Limits {
@@ -44,6 +46,12 @@ struct LocateConfig {
   double max_tilt_rad = 0.8;  ///< Against the work plane, 0..1.2.
   Order order = Order::kScore;
   Region region;         ///< Where the part's origin may lie, in the frame at the face.
+  /// Where it may not lie, up to kExclusionCountMax. The caller's, for as long as a search lasts.
+  std::span<const Region> exclusions{};
+  /// The range of the origin's z, in the frame at the face. What lies outside of it, or inside an
+  /// exclusion, is not searched any further and takes no place among the matches.
+  double height_min_mm = -std::numeric_limits<double>::infinity();
+  double height_max_mm = std::numeric_limits<double>::infinity();
   double cell_mm = 0.0;  ///< Finest level; 0: the template's. Smaller is slower and finer.
   rectify::Method method = rectify::Method::kPaint;
   bool use_height = true;  ///< Off, with the next: the search as the thesis has it.

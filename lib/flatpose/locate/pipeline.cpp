@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flatpose/core/budget.hpp"
 #include "flatpose/locate/contest.hpp"
@@ -92,6 +93,7 @@ class Pipeline {
     const double noise_mm = std::max({survey->noise_sigma_mm, 0.01 * pitch_mm, 0.02 * cell_mm});
     settings_ = derive_settings(part_, config_, noise_mm, pitch_mm, cell_mm);
     settings_.search.vector_path = limits_.vector_path;
+    bound_origins(cell_mm);
     settings_.scene.vector_path = limits_.vector_path;
     settings_.polish.vector_path = limits_.vector_path;
     scene::SceneConfig scene_config = settings_.scene;
@@ -122,6 +124,28 @@ class Pipeline {
     if (grid && (grid->width_px > kMapSideMax_px || grid->height_px > kMapSideMax_px))
       return Status::kTooLarge;
     return grid;
+  }
+
+  // The tilt read off an anchor is off by some degrees at worst, its place by a step of the
+  // lattice.
+  void bound_origins(double cell_mm) noexcept {
+    constexpr double kTiltError_rad = 0.1;
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    settings_.origins = {frames_.face_T_work, config_.height_min_mm, config_.height_max_mm,
+                         config_.exclusions};
+    if (config_.exclusions.empty() && config_.height_min_mm == -kInfinite &&
+        config_.height_max_mm == kInfinite)
+      return;
+    double lever_mm = 0.0;
+    for (int i = 0; i < part_.anchor_count; ++i) {
+      const model::Anchor& anchor = part_.anchors[i];
+      lever_mm = std::max(lever_mm, std::sqrt(static_cast<double>(anchor.x_mm) * anchor.x_mm +
+                                              static_cast<double>(anchor.y_mm) * anchor.y_mm));
+    }
+    const double turn_error_rad = std::max(settings_.search.angle_step_rad, kTiltError_rad);
+    settings_.search.origins = &settings_.origins;
+    settings_.search.origin_margin_mm =
+        4.0 * settings_.places.stride_px * cell_mm + turn_error_rad * lever_mm;
   }
 
   Status build_images() noexcept {

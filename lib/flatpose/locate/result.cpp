@@ -46,6 +46,10 @@ Status validate(const LocateConfig& c) noexcept {
   const bool ok = c.max_matches >= 1 && c.max_matches <= kMatchCountMax && c.min_score <= 1.0 &&
                   within(c.min_visible, 0.0, 1.0) && within(c.max_tilt_rad, 0.0, kTiltMax_rad) &&
                   within(c.cell_mm, 0.0, kCellMax_mm) && is_valid(c.region) && c.deadline_us >= 0;
+  if (c.exclusions.size() > kExclusionCountMax || !(c.height_min_mm <= c.height_max_mm))
+    return Status::kInvalidArgument;
+  for (const Region& region : c.exclusions)
+    if (region.kind == Region::Kind::kAll || !is_valid(region)) return Status::kInvalidArgument;
   return ok ? Status::kOk : Status::kInvalidArgument;
 }
 

@@ -19,6 +19,7 @@ struct Settings {
   search::PlaceConfig places;
   search::SearchImagesConfig search_images;
   search::GridSearchConfig search;
+  search::OriginBounds origins;
   int tilt_radius_px = 3;  ///< Of the window that the tilt is read from, on the coarse level.
   refine::PoseProblemConfig wide;    ///< First refinement: from the grid's distance.
   refine::PoseProblemConfig narrow;  ///< Second: what is near already.

@@ -83,7 +83,9 @@ class Search {
     for (const std::int32_t threshold : {std::min(first, kCostMax), kCostMax}) {
       evaluate_all(threshold);
       if (budget_.is_over()) return Status::kStopped;
-      count = list_minima(places_, memory_.bests, angle_count_, memory_.block_lows, candidates);
+      const Hypotheses wanted = hypotheses();
+      count = list_minima(places_, memory_.bests, angle_count_, memory_.block_lows, candidates,
+                          config_.origins == nullptr ? nullptr : &wanted);
       if (!is_limited_ || count == static_cast<int>(candidates.size())) break;
     }
     for (Candidate& c : candidates.first(static_cast<std::size_t>(count))) finish(c);
@@ -206,6 +208,16 @@ class Search {
     return static_cast<int>(found - places_.blocks.data());
   }
 
+  [[nodiscard]] Hypotheses hypotheses() const noexcept {
+    return {field_,
+            images_.grid,
+            anchor_,
+            memory_.turns,
+            images_.lattice.stride_px,
+            config_.origins,
+            config_.origin_margin_mm};
+  }
+
   [[nodiscard]] std::int16_t cell_of(int place) const noexcept {
     return static_cast<std::int16_t>(place * images_.lattice.stride_px);
   }
@@ -224,9 +236,7 @@ class Search {
     const Tilt tilt = tilt_of(sx, sy);
     const Rotation& turn = memory_.turns[c.angle_index];
     const Rotation rotation = tilt.rotation * turn;
-    const Vec3 anchor_work_mm{images_.grid.x_of(c.column), images_.grid.y_of(c.row),
-                              field_.plane_mm(c.column, c.row)};
-    c.work_T_object = {rotation, anchor_work_mm - rotation * Vec3{anchor_.x_mm, anchor_.y_mm, 0.0}};
+    c.work_T_object = hypotheses().work_T_object(c.column, c.row, rotation);
     const ProjectedTemplate projected = projector_.at(tilt, turn);
     c.cost_q10 = c.cost_q10 * 1024 / std::max(1, cost_max(images_, projected));
   }

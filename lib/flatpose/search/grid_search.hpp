@@ -11,6 +11,7 @@
 #include "flatpose/model/template.hpp"
 #include "flatpose/search/block_search.hpp"
 #include "flatpose/search/candidate.hpp"
+#include "flatpose/search/origin_bounds.hpp"
 #include "flatpose/search/places.hpp"
 #include "flatpose/search/score.hpp"
 #include "flatpose/search/search_images.hpp"
@@ -28,6 +29,8 @@ struct GridSearchConfig {
   /// one round. Measured: lists of 24 to 48 end at 0.6 to 0.72.
   double first_share = 0.72;
   VectorPath vector_path = VectorPath::kPortable;  ///< One that the processor has.
+  const OriginBounds* origins = nullptr;  ///< Where the origin may not lie; null: anywhere.
+  double origin_margin_mm = 0.0;          ///< What a candidate's origin may still be off by.
 };
 
 struct GridSearchResult {

@@ -13,10 +13,12 @@ constexpr int kAngleReach = 2;
 class Lister {
  public:
   Lister(const Places& places, const SectorBests& bests, int angle_count,
-         std::span<std::uint8_t> block_lows, std::span<Candidate> minima) noexcept
+         const Hypotheses* hypotheses, std::span<std::uint8_t> block_lows,
+         std::span<Candidate> minima) noexcept
       : places_(places),
         bests_(bests),
         angle_count_(angle_count),
+        hypotheses_(hypotheses),
         block_lows_(block_lows),
         minima_(minima),
         blocks_across_(places.padded_width / kBlockSize) {}
@@ -97,7 +99,8 @@ class Lister {
     for (int i = 0; i < kBlockSize; ++i) {
       if (costs[i] < from || costs[i] >= std::min(to, room_below())) continue;
       const Best best = best_at(first + i, row, sector);
-      if (best.angle_index >= 0 && is_local_minimum(first + i, row, best))
+      if (best.angle_index >= 0 && is_local_minimum(first + i, row, best) &&
+          (hypotheses_ == nullptr || hypotheses_->is_wanted(first + i, row, best.angle_index)))
         insert(first + i, row, best);
     }
   }
@@ -165,6 +168,7 @@ class Lister {
   const Places& places_;
   const SectorBests& bests_;
   int angle_count_;
+  const Hypotheses* hypotheses_;
   std::span<std::uint8_t> block_lows_;
   std::span<Candidate> minima_;
   int blocks_across_;
@@ -179,8 +183,10 @@ std::span<std::uint8_t> take_block_lows(Arena& arena, std::size_t place_count) n
 }
 
 int list_minima(const Places& places, const SectorBests& bests, int angle_count,
-                std::span<std::uint8_t> block_lows, std::span<Candidate> minima) noexcept {
-  return minima.empty() ? 0 : Lister(places, bests, angle_count, block_lows, minima).run();
+                std::span<std::uint8_t> block_lows, std::span<Candidate> minima,
+                const Hypotheses* hypotheses) noexcept {
+  return minima.empty() ? 0
+                        : Lister(places, bests, angle_count, hypotheses, block_lows, minima).run();
 }
 
 }  // namespace flatpose::search

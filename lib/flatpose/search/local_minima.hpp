@@ -9,6 +9,7 @@
 #include "flatpose/core/arena.hpp"
 #include "flatpose/search/block_search.hpp"
 #include "flatpose/search/candidate.hpp"
+#include "flatpose/search/hypotheses.hpp"
 #include "flatpose/search/places.hpp"
 
 namespace flatpose::search {
@@ -27,9 +28,11 @@ struct SectorBests {
 /// Fills `minima` with the best, in order of cost, row, column, angle, and returns how many. Of a
 /// candidate it knows the angle, and for now in places and plain cost: column, row, cost_q10.
 /// No neighbouring place (within two) is better at about the same angle (within two); of equals
-/// the first counts.  Cost: one pass over the costs; then only blocks that hold something as good.
+/// the first counts; of `hypotheses` (null: all are) those
+/// that are not wanted take no room.  Cost: one pass over the costs; then
+/// only blocks that hold something as good.
 [[nodiscard]] int list_minima(const Places& places, const SectorBests& bests, int angle_count,
-                              std::span<std::uint8_t> block_lows,
-                              std::span<Candidate> minima) noexcept;
+                              std::span<std::uint8_t> block_lows, std::span<Candidate> minima,
+                              const Hypotheses* hypotheses = nullptr) noexcept;
 
 }  // namespace flatpose::search

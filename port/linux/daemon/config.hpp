@@ -88,7 +88,8 @@ struct PartConfig {
 struct JobConfig {
   job::JobRule rule;
   std::vector<int> parts;       ///< Indices into Config::parts, searched in the same scan.
-  locate::LocateConfig locate;  ///< Its deadline is the job's.
+  locate::LocateConfig locate;  ///< Its deadline is the job's; exclusions are the next.
+  std::vector<Region> exclusions;
   std::string work_file;        ///< Of frame "work"; with others it says where up is.
   std::string robot_file;       ///< Of frame "robot".
   ReportRule report;

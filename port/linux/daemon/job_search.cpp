@@ -128,6 +128,7 @@ Answer JobSearch::without_match() const noexcept {
 void JobSearch::search_part(int part, int index, const job::Order& order, const HeldScan& scan,
                             const Host& host) noexcept {
   locate::LocateConfig config = job_->config.locate;
+  config.exclusions = job_->config.exclusions;
   const std::int64_t now_us = host.clock.now_us();
   const std::int64_t end_us = std::min(order.answer_by_us, start_us_ + config.deadline_us);
   config.deadline_us = std::max<std::int64_t>(end_us - now_us, 1);

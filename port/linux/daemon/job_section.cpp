@@ -66,6 +66,16 @@ void read_search_of(Section& section, JobConfig& job) {
   if (const auto tilt_deg = section.number("max_tilt_deg", 0.0, kTiltMax_deg))
     locate.max_tilt_rad = *tilt_deg * kRadPerDeg;
   locate.order = static_cast<locate::Order>(section.choice("order", kOrders).value_or(0));
+  if (const auto pair = section.numbers("height_mm", -kReachMax_mm, kReachMax_mm, 2);
+      !pair.empty()) {
+    if (pair[0] > pair[1])
+      section.fail("height_mm", "'height_mm' runs backwards", "give the least first");
+    locate.height_min_mm = pair[0];
+    locate.height_max_mm = pair[1];
+  }
+  for (const std::string& text : section.texts("exclusions", locate::kExclusionCountMax))
+    job.exclusions.push_back(
+        tool::parse_region(section.place_of("exclusions") + ": exclusions", text));
   const auto region = section.text("region");
   if (region) locate.region = tool::parse_region(section.place_of("region") + ": region", *region);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -244,6 +245,36 @@ TEST(Region, CountsOutsideTheLimitsAreRefused) {
   region.kind = Region::Kind::kBox;
   region.vertex_count = 1;
   EXPECT_FALSE(is_valid(region));
+}
+
+// Against the nearest of many points beside: where contains() changes there is the border.
+TEST(Region, BorderDistanceIsThatToTheNearestOtherSide) {
+  Region round, box, polygon;
+  round.kind = Region::Kind::kCircle;
+  round.x_mm = 1.0;
+  round.radius_mm = 3.0;
+  box.kind = Region::Kind::kBox;
+  box.vertex_count = 2;
+  box.vertex_x_mm = {-2.0, 3.0};
+  box.vertex_y_mm = {4.0, -1.0};
+  polygon.kind = Region::Kind::kPolygon;
+  polygon.vertex_count = 5;  // a notch
+  polygon.vertex_x_mm = {-3.0, 3.0, 3.0, 0.0, -3.0};
+  polygon.vertex_y_mm = {-3.0, -3.0, 3.0, 0.0, 3.0};
+  constexpr double kStep = 0.05;
+  for (const Region& region : {round, box, polygon}) {
+    for (double x = -4.0; x <= 4.0; x += 0.77) {
+      for (double y = -4.0; y <= 4.0; y += 0.77) {
+        double least = 1e9;
+        for (double u = -9.0; u <= 9.0; u += kStep)
+          for (double v = -9.0; v <= 9.0; v += kStep)
+            if (region.contains(u, v) != region.contains(x, y))
+              least = std::min(least, std::hypot(u - x, v - y));
+        EXPECT_NEAR(region.border_distance_mm(x, y), least, 1.5 * kStep);
+      }
+    }
+  }
+  EXPECT_EQ(Region{}.border_distance_mm(0, 0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -271,6 +271,104 @@ TEST(Locate, TellsPosesAndTakesRegionsInAnyFrameAtTheFace) {
   }
 }
 
+TEST(Locate, LooksNowhereInAnExclusion) {
+  const std::vector<Block> blocks = test::three_blocks();
+  const MadeScan scan = test::bin_scan(blocks);
+  for (const Pose& face_T_scan :
+       {Pose{}, Pose{rotation_from_vector({3.0, 0.3, 0.2}), {900, -400, 700}}}) {
+    const Frames frames{{}, face_T_scan};
+    for (int wanted = 0; wanted < 3; ++wanted) {
+      std::vector<Region> exclusions;
+      for (int i = 0; i < 3; ++i) {
+        const Vec3 p = face_T_scan * blocks[i].scan_T_object.position_mm;
+        if (i != wanted) exclusions.push_back(circle(p.x, p.y, 12.0));
+      }
+      // One match is asked for: what is excluded takes none of its room.
+      LocateConfig config;
+      config.exclusions = exclusions;
+      Locating locating;
+      ASSERT_EQ(locating.locator.locate(test::block_part(), scan.view(), frames, config,
+                                        StoppedClock{}, locating.result),
+                Status::kOk);
+      ASSERT_EQ(locating.result.match_count, 1);
+      Match m = locating.result.matches[0];
+      m.face_T_object = face_T_scan.inverse() * m.face_T_object;
+      EXPECT_EQ(block_of(m, blocks), wanted);
+    }
+  }
+}
+
+TEST(Locate, LooksInTheRangeOfHeightsOnly) {
+  const std::vector<Block> blocks = test::three_blocks();
+  const MadeScan scan = test::bin_scan(blocks);
+  const auto found_at = [&](double low_mm, double high_mm) {
+    LocateConfig config;
+    config.max_matches = 5;
+    config.height_min_mm = low_mm;
+    config.height_max_mm = high_mm;
+    Locating locating;
+    EXPECT_EQ(locating.run(test::block_part(), scan.view(), config), Status::kOk);
+    std::vector<int> found;
+    for (const Match& m : locating.result.found()) found.push_back(block_of(m, blocks));
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  EXPECT_EQ(found_at(-1e9, 1e9), (std::vector<int>{0, 1, 2}));
+  for (int i = 0; i < 3; ++i) {
+    const double z_mm = blocks[i].scan_T_object.position_mm.z;
+    std::vector<int> expected;
+    for (int j = 0; j < 3; ++j)
+      if (std::fabs(blocks[j].scan_T_object.position_mm.z - z_mm) < 0.4) expected.push_back(j);
+    EXPECT_EQ(found_at(z_mm - 0.4, z_mm + 0.4), expected);
+    EXPECT_EQ(found_at(z_mm + 300.0, z_mm + 301.0), std::vector<int>{});
+  }
+}
+
+// Many copies of the part where it may not lie, and one where it may: candidates are of the latter.
+TEST(Locate, WhatIsExcludedTakesNoRoomAmongTheCandidates) {
+  const std::vector<Block> blocks = test::three_blocks();
+  const MadeScan scan = test::bin_scan(blocks);
+  const Vec3& p = blocks[0].scan_T_object.position_mm;
+  Region all_but_it;  // a frame around everything, with the one place cut out by a slit
+  all_but_it.kind = Region::Kind::kPolygon;
+  const double xy[][2] = {{-500, -500},   {p.x, -500},    {p.x, p.y - 8}, {p.x - 8, p.y},
+                          {p.x, p.y + 8}, {p.x + 8, p.y}, {p.x, p.y - 8}, {p.x + 1e-3, -500},
+                          {500, -500},    {500, 500},     {-500, 500}};
+  for (const auto& corner : xy) {
+    all_but_it.vertex_x_mm[all_but_it.vertex_count] = corner[0];
+    all_but_it.vertex_y_mm[all_but_it.vertex_count++] = corner[1];
+  }
+  ASSERT_FALSE(all_but_it.contains(p.x + 1, p.y + 1));
+  ASSERT_TRUE(all_but_it.contains(p.x + 30, p.y + 30));
+  LocateConfig config;
+  config.max_matches = 5;
+  Locating everywhere;
+  ASSERT_EQ(everywhere.run(test::block_part(), scan.view(), config), Status::kOk);
+  config.exclusions = {&all_but_it, 1};
+  Locating locating;
+  ASSERT_EQ(locating.run(test::block_part(), scan.view(), config), Status::kOk);
+  ASSERT_EQ(locating.result.match_count, 1);
+  EXPECT_EQ(block_of(locating.result.matches[0], blocks), 0);
+  EXPECT_LT(locating.result.candidate_count, everywhere.result.candidate_count);
+}
+
+TEST(Locate, RefusesBoundsThatAreNone) {
+  LocateConfig config;
+  EXPECT_EQ(validate(config), Status::kOk);
+  config.height_min_mm = 2.0;
+  config.height_max_mm = 1.0;
+  EXPECT_EQ(validate(config), Status::kInvalidArgument);
+  config.height_max_mm = std::nan("");
+  EXPECT_EQ(validate(config), Status::kInvalidArgument);
+  config = {};
+  std::vector<Region> exclusions(1);
+  config.exclusions = exclusions;
+  EXPECT_EQ(validate(config), Status::kInvalidArgument);  // everything is excluded
+  exclusions.assign(kExclusionCountMax + 1, circle(0, 0, 1));
+  config.exclusions = exclusions;
+  EXPECT_EQ(validate(config), Status::kInvalidArgument);
+}
+
 TEST(Locate, TakesNoneThatShowsTooLittle) {
   // About a third of the part lies under something.
   const std::vector<Block> blocks{{test::pose_at(70, 60, 10, 0.2)}};

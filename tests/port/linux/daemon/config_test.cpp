@@ -227,6 +227,10 @@ TEST(Config, RefusesJobsThatCannotBeRun) {
   expect_refused(job + "frame = \"work\"\n", {"dir/f.toml:6: ", "flatpose align"});
   expect_refused(job + "frame = \"robt\"\n", {"dir/f.toml:6: ", "scan, work, robot"});
   expect_refused(job + "alignment = \"r.json\"\n", {"dir/f.toml:6: ", "frame = \"robot\""});
+  expect_refused(job + "height_mm = [2, 1]\n", {"dir/f.toml:6: ", "runs backwards"});
+  expect_refused(job + "exclusions = \"circle:0,0,1\"\n", {"dir/f.toml:6: ", "not a list"});
+  expect_refused(job + "exclusions = [\"circle:0\"]\n",
+                 {"dir/f.toml:6: exclusions", "circle:X,Y,R"});
   expect_refused(job + "region = \"circle:1\"\n", {"dir/f.toml:6: region", "circle:X,Y,R"});
   expect_refused(job + "limit_z_mm = [2, 1]\n", {"dir/f.toml:6: ", "runs backwards"});
   expect_refused(job + "limit_z_mm = [2]\n", {"dir/f.toml:6: ", "give 2"});

@@ -291,5 +291,29 @@ TEST_F(JobsServed, VerifyTellsWhetherThePlaneHoldsAndGuardsItsJobs) {
       << daemon.log();
 }
 
+TEST_F(JobsServed, ExclusionsAndHeightsBoundTheSearch) {
+  const std::string plain = dry_run();
+  const Vec3 p = located(plain, kScan)->matches[0].face_T_object.position_mm;
+  const auto number = [](double value) { return std::to_string(value); };
+  const std::string there = "circle:" + number(p.x) + "," + number(p.y) + ",15";
+  const std::string config =
+      dry_run("exclusions = [\"circle:5000,0,1\"]\nheight_mm = [" + number(p.z - 1) + ", " +
+                  number(p.z + 1) + "]",
+              "[[job]]\nnumber = 2\nparts = [\"pad\"]\nexclusions = [\"circle:5000,0,1\", \"" +
+                  there + "\"]\n[[job]]\nnumber = 3\nparts = [\"pad\"]\nheight_mm = [" +
+                  number(p.z + 40) + ", " + number(p.z + 90) + "]\n");
+  RunningDaemon daemon({"--config", config});
+  Plc plc(daemon.port());
+  ASSERT_TRUE(plc.waits_until_ready());
+  const Plc::Block inside = plc.trigger(1, 0, 1, 1);
+  EXPECT_EQ(inside[Field::kStatus], 0);
+  EXPECT_NEAR(static_cast<double>(inside[Field::kPositionX]), p.x * 1000, 1.01);
+  for (const std::uint16_t job : {std::uint16_t{2}, std::uint16_t{3}}) {
+    const Plc::Block block = plc.trigger(job, 0, 1, job);
+    EXPECT_EQ(block[Field::kStatus], static_cast<int>(Answer::kNoMatch)) << job;
+    EXPECT_FALSE(block.has(job::kValid));
+  }
+}
+
 }  // namespace
 }  // namespace flatpose::daemon
