@@ -257,7 +257,7 @@ def main():
     bench.say(f"{options.triggers} triggers")
     results["soak"] = soak(bench)
     bench.say("the way by stages")
-    results["stages"], results["stages_plc"] = stages(bench, 200 if options.quick else 3000)
+    results["stages"], results["stages_plc"] = stages(bench, min(options.triggers, 200 if options.quick else 3000))
     results["faults"] = under_faults(bench, options.seconds)
     bench.say("fault: full disk, bad scans, kill -9")
     results["faults"]["full disk"] = full_disk(bench, options.seconds)

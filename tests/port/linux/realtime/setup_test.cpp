@@ -10,6 +10,7 @@
 #include <cstring>
 #include <thread>
 
+#include "port/linux/realtime/background_thread.hpp"
 #include "port/linux/realtime/memory.hpp"
 #include "port/linux/realtime/process_setup.hpp"
 #include "port/linux/realtime/thread_setup.hpp"
@@ -163,6 +164,29 @@ TEST(PrefaultedMemory, IsThereAndEmpty) {
   for (const std::byte byte : memory.span()) ASSERT_EQ(byte, std::byte{0});
   EXPECT_TRUE(PrefaultedMemory(0).span().empty());
   EXPECT_THROW(PrefaultedMemory(std::size_t{1} << 60), std::bad_alloc);
+}
+
+TEST(BackgroundThread, MakesRoomAndKeepsOffTheSearchsCpus) {
+  cpu_set_t all;
+  ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+  int first = 0;
+  while (!CPU_ISSET(static_cast<unsigned>(first), &all)) ++first;
+  RealtimeConfig config;
+  config.cpus = {first};
+  Steps steps;
+  cpu_set_t kept;
+  int nice = 0;
+  std::thread([&] {
+    steps = set_up_background_thread(config, "test");
+    sched_getaffinity(0, sizeof kept, &kept);
+    nice = getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
+  }).join();
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_TRUE(steps[0].is_done) << line_of(steps[0]);
+  EXPECT_EQ(nice, 19);
+  const bool has_another = CPU_COUNT(&all) > 1;  // else there is nowhere to go, and it says so
+  EXPECT_EQ(steps[1].is_done, has_another) << line_of(steps[1]);
+  EXPECT_EQ(CPU_ISSET(static_cast<unsigned>(first), &kept) == 0, has_another);
 }
 
 }  // namespace
