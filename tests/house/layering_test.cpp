@@ -24,7 +24,7 @@ const std::vector<std::string> kBusRooms{"job", "result_map", "modbus", "can"};
 // The same for port/linux: what asks the system for one thing, then what needs all of it.
 const std::vector<std::string> kLinuxRooms{"clock",    "cpu",     "files",  "camera",
                                            "realtime", "threads", "modbus", "can",
-                                           "tool",     "records", "daemon"};
+                                           "tool",     "records", "daemon", "programs"};
 
 struct Include {
   fs::path file;     // relative to the tree

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "port/linux/files/input_error.hpp"
+#include "port/linux/tool/served_map.hpp"
 
 namespace CLI {
 class App;
@@ -37,6 +38,6 @@ using Action = std::function<ExitCode(Report&)>;
 [[nodiscard]] Action add_align(CLI::App& app);
 [[nodiscard]] Action add_info(CLI::App& app);
 [[nodiscard]] Action add_simulate(CLI::App& app);
-[[nodiscard]] Action add_map(CLI::App& app);
+[[nodiscard]] Action add_map(CLI::App& app, const ReadServedMap& read_config);
 
 }  // namespace flatpose::tool

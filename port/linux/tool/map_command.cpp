@@ -1,30 +1,31 @@
 // flatpose map
 
 #include <memory>
+#include <optional>
 
-#include "flatpose/can/config.hpp"
 #include "port/linux/tool/command.hpp"
 #include "port/linux/tool/map_can.hpp"
 #include "port/linux/tool/map_text.hpp"
 #include "port/linux/tool/number_text.hpp"
 #include "port/linux/tool/options.hpp"
+#include "port/linux/tool/served_map.hpp"
 
 namespace flatpose::tool {
 namespace {
 
 struct Format {
   const char* name;
-  std::string (*text)(int node);
+  std::string (*text)(const ServedMap& served);
 };
 constexpr Format kFormats[] = {
-    {"markdown", [](int) { return map_markdown(); }},
-    {"json", [](int) { return map_json(); }},
-    {"csv", [](int) { return map_csv(); }},
-    {"c", [](int) { return map_c_header(); }},
-    {"st", [](int) { return map_function_block(PlcDialect::kCodesys); }},
-    {"scl", [](int) { return map_function_block(PlcDialect::kScl); }},
-    {"eds", [](int) { return map_eds(); }},
-    {"dbc", map_dbc},
+    {"markdown", map_markdown},
+    {"json", map_json},
+    {"csv", map_csv},
+    {"c", map_c_header},
+    {"st", [](const ServedMap& s) { return map_function_block(PlcDialect::kCodesys, s); }},
+    {"scl", [](const ServedMap& s) { return map_function_block(PlcDialect::kScl, s); }},
+    {"eds", [](const ServedMap&) { return map_eds(); }},
+    {"dbc", [](const ServedMap& s) { return map_dbc(s.node); }},
 };
 
 const Format& format_named(const std::string& name) {
@@ -37,18 +38,23 @@ const Format& format_named(const std::string& name) {
 
 }  // namespace
 
-Action add_map(CLI::App& app) {
+Action add_map(CLI::App& app, const ReadServedMap& read_config) {
   auto format = std::make_shared<const Format*>(&kFormats[0]);
-  auto node = std::make_shared<int>(can::Config{}.node);
+  auto node = std::make_shared<std::optional<int>>();
+  auto config = std::make_shared<std::string>();
   add_text(app, "--format", "FORMAT",
            "json | markdown | csv | st | scl | c | eds | dbc; default markdown",
            [format](const std::string& text) { *format = &format_named(text); });
-  add_text(app, "--node", "N", "of dbc: the CAN node that it is for; default 10",
+  app.add_option("--config", *config, "a daemon's: the map as that serves it")
+      ->type_name("FILE.toml");
+  add_text(app, "--node", "N", "of dbc: the CAN node that it is for; default the config's, or 10",
            [node](const std::string& text) {
              *node = static_cast<int>(parse_whole("--node", text, 1, can::kNodeMax));
            });
-  return [format, node](Report& report) {
-    report.text = (*format)->text(*node);
+  return [format, node, config, read_config](Report& report) {
+    ServedMap served = config->empty() ? ServedMap{} : read_config(*config);
+    served.node = node->value_or(served.node);
+    report.text = (*format)->text(served);
     return ExitCode::kDone;
   };
 }

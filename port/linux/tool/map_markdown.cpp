@@ -1,6 +1,10 @@
 // The document of the register map, for PLC programmers.
 
+#include <bit>
+#include <cmath>
+
 #include "flatpose/result_map/table.hpp"
+#include "flatpose/result_map/value.hpp"
 #include "port/linux/tool/map_names.hpp"
 #include "port/linux/tool/map_text.hpp"
 #include "port/linux/tool/number_text.hpp"
@@ -73,13 +77,31 @@ void add_values(const char* title, ValueSet set, std::string& text) {
   text += "\n";
 }
 
+// What of all that is said above holds for this config.
+void add_config(const ServedMap& served, std::string& text) {
+  const auto& format = served.format;
+  const auto none = std::bit_cast<float>(format.none_float32);
+  text += formatted(
+      "## As configured\nWord order %s. There is no pose: int32 %d, float32 %s. Trigger: "
+      "handshake = \"%s\".\n\n| job | parts; frame, convention | int32 of rotations |\n"
+      "|---|---|---|\n",
+      name_of(format.order), static_cast<std::int32_t>(format.none_int32),
+      std::isnan(none) ? "NaN" : formatted("%g", static_cast<double>(none)).c_str(),
+      served.handshake == job::Handshake::kBits ? "bits" : "number");
+  for (const ServedJob& job : served.jobs)
+    text += formatted("| %d | %s | x %g |\n", job.number, text_of(job).c_str(),
+                      result_map::rotation_scale(job.convention));
+  text += "\n";
+}
+
 }  // namespace
 
-std::string map_markdown() {
+std::string map_markdown(const ServedMap& served) {
   std::string text = kIntroduction;
   text +=
       formatted("%d registers\n   from %d. ", result_map::kResultWords, result_map::kResultAddress);
   text += kSteps;
+  if (!served.config_path.empty()) add_config(served, text);
   add_registers(
       "Commands, written", [](const Entry& e) { return e.table == Table::kHolding; }, text);
   add_registers(

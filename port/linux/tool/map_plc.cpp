@@ -6,6 +6,7 @@
 #include <string>
 
 #include "flatpose/result_map/table.hpp"
+#include "port/linux/files/input_error.hpp"
 #include "port/linux/tool/map_text.hpp"
 #include "port/linux/tool/number_text.hpp"
 
@@ -33,7 +34,7 @@ std::string pair_of(const char* name, PlcDialect dialect) {
   return "DWORD_TO_DINT(" + text.substr(0, at) + high + text.substr(at + 2) + " OR " + low + ")";
 }
 
-std::string declarations(PlcDialect dialect) {
+std::string declarations(PlcDialect dialect, bool is_low_word_first) {
   const bool is_scl = dialect == PlcDialect::kScl;
   const char* timer =
       is_scl ? "tonWatch {InstructionName := 'TON_TIME'; LibVersion := '1.0'} : TON_TIME;"
@@ -44,8 +45,9 @@ std::string declarations(PlcDialect dialect) {
     uiJob : UINT := 1;
     tPatience : TIME := T#15s;   // more than answer_by_ms
     xLinkOk : BOOL;              // your Modbus master reads without error
-    xLowWordFirst : BOOL;        // word_order = "CDAB"
-)") +
+    xLowWordFirst : BOOL)") +
+         (is_low_word_first ? " := TRUE;" : ";       ") + R"( // word_order = "CDAB"
+)" +
          formatted("    awBlock : ARRAY[0..%d] OF WORD; // read: %d registers from %d\n",
                    result_map::kResultWords - 1, result_map::kResultWords,
                    result_map::kResultAddress) +
@@ -197,7 +199,14 @@ std::string with_locals(const std::string& text, PlcDialect dialect) {
 
 }  // namespace
 
-std::string map_function_block(PlcDialect dialect) {
+std::string map_function_block(PlcDialect dialect, const ServedMap& served) {
+  using result_map::WordOrder;
+  const WordOrder order = served.format.order;
+  if (order != WordOrder::kAbcd && order != WordOrder::kCdab)
+    throw port::InputError(
+        served.config_path,
+        std::string("the function block cannot read word_order = \"") + name_of(order) + "\"",
+        "take \"ABCD\" or \"CDAB\"");
   const bool is_scl = dialect == PlcDialect::kScl;
   const std::string head = formatted(
       "// Made by `flatpose map --format %s` for map version %d. No compiler has read it "
@@ -207,8 +216,8 @@ std::string map_function_block(PlcDialect dialect) {
                                     "'TRUE' }\nVERSION : 0.1\n"
                                   : "FUNCTION_BLOCK FB_Flatpose\n";
   const std::string begin = is_scl ? "\nBEGIN\n" : "\n";
-  return head + name + declarations(dialect) + begin + with_locals(body(dialect), dialect) +
-         "END_FUNCTION_BLOCK\n";
+  return head + name + declarations(dialect, order == WordOrder::kCdab) + begin +
+         with_locals(body(dialect), dialect) + "END_FUNCTION_BLOCK\n";
 }
 
 }  // namespace flatpose::tool

@@ -26,7 +26,6 @@ constexpr Command kCommands[] = {
     {"align", "find the work plane in a scan", add_align},
     {"info", "what a file is and holds", add_info},
     {"simulate", "make a scan whose truth is known", add_simulate},
-    {"map", "the registers that a PLC reads and writes", add_map},
 };
 
 // What stands on the line that no option or command takes; CLI11 complains of something missing
@@ -90,7 +89,8 @@ int print(const Report& report, ExitCode code, std::ostream& out, std::ostream& 
   return static_cast<int>(code);
 }
 
-int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) {
+int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
+        const ReadServedMap& read_config) {
   refuse_empty(args);
   CLI::App app("Finds flat parts in range images, as a 6-DoF pose.", "flatpose");
   app.set_version_flag("--version", kVersion);
@@ -100,6 +100,8 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err)
     CLI::App* sub = app.add_subcommand(command.name, command.what);
     sub->final_callback([&action, own = command.add(*sub)] { action = own; });
   }
+  CLI::App* map = app.add_subcommand("map", "the registers that a PLC reads and writes");
+  map->final_callback([&action, own = add_map(*map, read_config)] { action = own; });
   try {
     app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::ParseError& error) {
@@ -115,9 +117,10 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err)
 
 }  // namespace
 
-int run_tool(std::span<const std::string> args, std::ostream& out, std::ostream& err) noexcept {
+int run_tool(std::span<const std::string> args, std::ostream& out, std::ostream& err,
+             const ReadServedMap& read_config) noexcept {
   try {
-    return run(args, out, err);
+    return run(args, out, err, read_config);
   } catch (const NothingFound& nothing) {
     return say(err, nothing.line(), ExitCode::kNone);
   } catch (const port::InputError& error) {

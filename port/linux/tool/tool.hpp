@@ -8,11 +8,13 @@
 #include <span>
 #include <string>
 
+#include "port/linux/tool/served_map.hpp"
+
 namespace flatpose::tool {
 
-/// Runs one command; `args` are those after the program's name.
+/// Runs one command; `args` are those after the program's name. `read_config` is for map --config.
 /// Fails: never throws; what goes wrong is its exit code and a line on `err`.
-[[nodiscard]] int run_tool(std::span<const std::string> args, std::ostream& out,
-                           std::ostream& err) noexcept;
+[[nodiscard]] int run_tool(std::span<const std::string> args, std::ostream& out, std::ostream& err,
+                           const ReadServedMap& read_config) noexcept;
 
 }  // namespace flatpose::tool

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "port/linux/daemon/config_map.hpp"
 #include "port/linux/tool/tool.hpp"
 #include "tests/port/linux/daemon/running_daemon.hpp"
 #include "tests/port/linux/files/temporary_folder.hpp"
@@ -93,7 +94,7 @@ TEST_F(Records, AreReadBackByTheToolWithTheSameResult) {
   std::ostringstream err;
   const std::string scan = path(record["scan"]["file"]);
   const std::vector<std::string> args{"locate", FLATPOSE_EXAMPLE "/pad.fpt", scan, "--json"};
-  ASSERT_EQ(tool::run_tool(args, out, err), 0) << err.str();
+  ASSERT_EQ(tool::run_tool(args, out, err, read_served_map), 0) << err.str();
   const json located = json::parse(out.str());
   EXPECT_EQ(record["digest"], located["digest"]);
   for (const char* const key : {"status", "frame", "up", "part", "matches"})

@@ -123,6 +123,57 @@ TEST(MapCommand, FunctionBlocksCloseWhatTheyOpenAndDeclareWhatTheyUse) {
   }
 }
 
+const result_map::Entry& entry_of(const json& line) {
+  return *result_map::entry_at(line.at("address").get<int>());
+}
+
+TEST(MapCommand, ShowsTheMapAsAConfigServesIt) {
+  const port::TemporaryFolder folder;
+  const std::string path = folder.write(
+      "f.toml",
+      "[modbus]\nword_order = \"CDAB\"\nno_pose_int32 = -1\nno_pose_float32 = -1e9\n[can]\nnode = "
+      "33\n"
+      "[[part]]\nname = \"pad\"\nfile = \"pad.fpt\"\n[[part]]\nname = \"disc\"\nfile = "
+      "\"disc.fpt\"\n"
+      "[[job]]\nnumber = 7\nparts = [\"disc\", \"pad\"]\nconvention = \"ur_rotation_vector\"\n");
+  const json list = json::parse(run({"map", "--format", "json", "--config", path}).out);
+  ASSERT_EQ(list.size(), result_map::entries().size());
+  for (const json& line : list) {
+    const result_map::Entry& entry = entry_of(line);
+    SCOPED_TRACE(line["name"]);
+    const bool is_int32 = entry.type == result_map::Type::kInt32;
+    const bool is_float = entry.type == result_map::Type::kFloat32;
+    const bool is_rotation = result_map::is_rotation(entry.field);
+    EXPECT_EQ(line.value("word_order", ""), entry.words() == 2 ? "CDAB" : "");
+    EXPECT_EQ(line["scale"], is_rotation && is_int32 ? 1e-6 : entry.scale);
+    EXPECT_EQ(line.contains("none"), entry.may_be_none && (is_int32 || is_float));
+    if (line.contains("none")) {
+      EXPECT_EQ(line["none"], is_int32 ? json(-1) : json(-1e9F));
+    }
+    if (entry.field == result_map::Field::kJob) {
+      EXPECT_EQ(line["values"]["7"], "disc, pad; frame scan, ur_rotation_vector");
+    }
+  }
+  const auto text = [&](const char* format) {
+    return run({"map", "--format", format, "--config", path}).out;
+  };
+  EXPECT_NE(text("markdown").find("| 7 | disc, pad; frame scan, ur_rotation_vector | x 1e-06 |"),
+            std::string::npos);
+  EXPECT_NE(text("c").find("FLATPOSE_WORD_ORDER \"CDAB\""), std::string::npos);
+  EXPECT_NE(text("c").find("#define FLATPOSE_NONE_INT32 (0 - 1)"), std::string::npos);
+  EXPECT_NE(text("st").find("xLowWordFirst : BOOL := TRUE;"), std::string::npos);
+  EXPECT_EQ(text("dbc"), run({"map", "--format", "dbc", "--node", "33"}).out);
+}
+
+TEST(MapCommand, RefusesAConfigThatItCannotShow) {
+  const port::TemporaryFolder folder;
+  expect_refused(run({"map", "--config", folder.path("none.toml")}), 2, "none.toml");
+  const std::string unknown = folder.write("u.toml", "[modbus]\nword_ordr = \"CDAB\"\n");
+  expect_refused(run({"map", "--config", unknown}), 2, "word_order");
+  const std::string bytes = folder.write("b.toml", "[modbus]\nword_order = \"DCBA\"\n");
+  expect_refused(run({"map", "--format", "st", "--config", bytes}), 2, "DCBA");
+}
+
 TEST(MapCommand, RefusesWhatItCannotPrint) {
   expect_refused(run({"map", "--format", "dbc", "--node", "0"}), 2, "--node");
   expect_refused(run({"map", "--format", "dbc", "--node", "128"}), 2, "--node");

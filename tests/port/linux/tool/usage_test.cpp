@@ -120,7 +120,7 @@ TEST(Usage, BrokenStdoutIsAnError) {
   std::ostringstream out;
   std::ostringstream err;
   out.setstate(std::ios::badbit);
-  EXPECT_EQ(run_tool(Words{"--help"}, out, err), 2);
+  EXPECT_EQ(run_tool(Words{"--help"}, out, err, daemon::read_served_map), 2);
   EXPECT_EQ(err.str().rfind("flatpose: stdout: ", 0), 0U);
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "flatpose/geometry/pose.hpp"
+#include "port/linux/daemon/config_map.hpp"
 #include "port/linux/tool/tool.hpp"
 #include "tests/port/linux/files/temporary_folder.hpp"
 
@@ -29,7 +30,7 @@ inline Ran run(const Words& words) {
   std::ostringstream out;
   std::ostringstream err;
   Ran ran;
-  ran.code = run_tool(words, out, err);
+  ran.code = run_tool(words, out, err, daemon::read_served_map);
   ran.out = out.str();
   ran.err = err.str();
   return ran;
