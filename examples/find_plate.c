@@ -1,5 +1,5 @@
 /* Teaches a plate and finds it again, in C: what a controller does, with a scan made by hand where
- * a camera's would stand. Prints the pose; returns 0 when it is right. */
+ * a camera's would stand. Prints the pose, and where a gripper goes; returns 0 when it is right. */
 #include <flatpose/flatpose.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,18 +18,23 @@ static int is_plate(double x, double y) {
          hole_x * hole_x + hole_y * hole_y > 8.0 * 8.0;
 }
 
+static void lay_plate(double plate_x_mm, double plate_y_mm, double turn_rad) {
+  const double c = cos(turn_rad), s = sin(turn_rad);
+  for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+    const double dx = x_mm[i] - plate_x_mm, dy = y_mm[i] - plate_y_mm;
+    if (is_plate(c * dx + s * dy, c * dy - s * dx)) z_mm[i] = 12.0F;
+  }
+}
+
 /* A millimetre a pixel: a floor, and 12 mm above it the plate, moved and turned. */
 static flatpose_scan scan_of_plate(double plate_x_mm, double plate_y_mm, double turn_rad) {
   flatpose_scan scan = FLATPOSE_SCAN_INIT;
   for (int i = 0; i < WIDTH * HEIGHT; ++i) {
     x_mm[i] = (float)(i % WIDTH);
     y_mm[i] = (float)(i / WIDTH);
-    const double dx = x_mm[i] - plate_x_mm, dy = y_mm[i] - plate_y_mm;
-    z_mm[i] =
-        is_plate(cos(turn_rad) * dx + sin(turn_rad) * dy, cos(turn_rad) * dy - sin(turn_rad) * dx)
-            ? 12.0F
-            : 0.0F;
+    z_mm[i] = 0.0F;
   }
+  lay_plate(plate_x_mm, plate_y_mm, turn_rad);
   scan.x_mm = x_mm;
   scan.y_mm = y_mm;
   scan.z_mm = z_mm;
@@ -71,6 +76,9 @@ int main(void) {
 
   flatpose_teach_config lesson = FLATPOSE_TEACH_CONFIG_INIT;
   lesson.name = "plate";
+  lesson.has_origin = 1;
+  lesson.origin_xy_mm[0] = 160.0;
+  lesson.origin_xy_mm[1] = 120.0;
   const flatpose_scan taught = scan_of_plate(160.0, 120.0, 0.0);
   const flatpose_scan* const scans[] = {&taught};
   flatpose_part* part = NULL;
@@ -80,7 +88,18 @@ int main(void) {
 
   const double turn_rad = 0.7;
   const flatpose_scan scan = scan_of_plate(130.0, 90.0, turn_rad);
+  lay_plate(250.0, 170.0, 2.0);
   flatpose_config config = FLATPOSE_CONFIG_INIT;
+  config.max_matches = 2;
+  /* The second one lies where rejects are put, and is none of ours; nor is what is piled up. */
+  const double rejects[] = {200.0, 120.0, 320.0, 240.0};
+  flatpose_region exclusion = {FLATPOSE_REGION_BOX, 0.0, 0.0, 0.0, 2, NULL};
+  exclusion.vertices_xy_mm = rejects;
+  config.exclusions = &exclusion;
+  config.exclusion_count = 1;
+  config.has_heights = 1;
+  config.height_min_mm = 8.0;
+  config.height_max_mm = 16.0;
   config.deadline_us = 10000000;
   flatpose_host host = FLATPOSE_HOST_INIT;
   host.now_us = now_us;
@@ -89,7 +108,7 @@ int main(void) {
   printf("%s: %s, %d found in %.1f ms, %zu bytes\n", info.name,
          flatpose_outcome_name(result.outcome), (int)result.match_count,
          (double)result.total_us / 1000.0, finder_bytes);
-  if (result.match_count < 1) return 1;
+  if (result.match_count != 1) return 1;
 
   flatpose_match match = FLATPOSE_MATCH_INIT;
   check(flatpose_match_at(finder, 0, &match), "match");
@@ -100,6 +119,14 @@ int main(void) {
   const double* then = info.taught.rotation;
   const double cosine = now[0] * then[0] + now[3] * then[3];
   const double turned_rad = acos(cosine < 1.0 ? cosine : 1.0);
+  /* The hole's middle, where a gripper goes in, from above: its z into the surface. */
+  flatpose_pick pick = FLATPOSE_PICK_INIT;
+  pick.object_T_pick.rotation[4] = pick.object_T_pick.rotation[8] = -1.0;
+  pick.object_T_pick.position_mm[0] = 20.0;
+  pick.object_T_pick.position_mm[1] = 5.0;
+  check(flatpose_pick_at(finder, 0, &pick, &match), "pick");
+  printf("pick at (%.2f %.2f %.2f) mm, sigma %.3f mm\n", match.pose.position_mm[0],
+         match.pose.position_mm[1], match.pose.position_mm[2], match.sigma_mm[0]);
   free(finder_memory);
   free(part_memory);
   return fabs(turned_rad - turn_rad) < 0.02 ? 0 : 1;

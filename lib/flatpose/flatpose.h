@@ -5,7 +5,8 @@
  *   flatpose_init(&limits, memory, bytes, &finder);
  *   flatpose_part_load(file, file_bytes, part_memory, part_bytes, &part);
  *   flatpose_locate(finder, part, &scan, &config, &host, &result);
- *   flatpose_match_at(finder, 0, &match);
+ *   flatpose_match_at(finder, 0, &match);                      the part's pose, or
+ *   flatpose_pick_at(finder, 0, &pick, &match);                where a tool goes
  *
  * Memory   Nothing is allocated, ever. Handles live in memory that the caller gives and must not
  *          move; there is nothing to close.
@@ -160,6 +161,7 @@ enum {
   FLATPOSE_REGION_BOX = 2, /* two opposite corners */
   FLATPOSE_REGION_POLYGON = 3
 };
+/* Passed inside others, and in arrays: it never grows. */
 typedef struct flatpose_region {
   int32_t kind;
   double x_mm; /* of a circle */
@@ -194,6 +196,7 @@ typedef struct flatpose_host {
 /* ---- locate --------------------------------------------------------------------------------- */
 
 #define FLATPOSE_MATCH_COUNT_MAX 64
+#define FLATPOSE_EXCLUSION_COUNT_MAX 16
 enum { FLATPOSE_ORDER_SCORE = 0, FLATPOSE_ORDER_HEIGHT = 1, FLATPOSE_ORDER_VISIBLE = 2 };
 
 typedef struct flatpose_config {
@@ -206,12 +209,18 @@ typedef struct flatpose_config {
   double cell_mm;         /* of the finest height map; 0: the part's own */
   int64_t deadline_us;    /* after the call; 0: none. Without host->now_us it never strikes */
   flatpose_region region; /* where the part's origin may lie */
+  /* Where it may not lie, and the range of its z. What lies there is not searched any further and
+   * takes no place among the matches. Coordinates of the frame of the poses. */
+  int32_t exclusion_count;           /* 0 to FLATPOSE_EXCLUSION_COUNT_MAX */
+  const flatpose_region* exclusions; /* none of them ALL */
+  int32_t has_heights;               /* default: any */
+  double height_min_mm;              /* at most height_max_mm; may be infinite */
+  double height_max_mm;
 } flatpose_config;
-#define FLATPOSE_CONFIG_INIT                                                     \
-  {                                                                              \
-    sizeof(flatpose_config), 1, FLATPOSE_ORDER_SCORE, -1.0, 0.5, -1.0, 0.0, 0, { \
-      FLATPOSE_REGION_ALL, 0.0, 0.0, 0.0, 0, NULL                                \
-    }                                                                            \
+#define FLATPOSE_CONFIG_INIT                                                   \
+  {                                                                            \
+    sizeof(flatpose_config), 1, FLATPOSE_ORDER_SCORE, -1.0, 0.5, -1.0, 0.0, 0, \
+        {FLATPOSE_REGION_ALL, 0.0, 0.0, 0.0, 0, NULL}, 0, NULL, 0, 0.0, 0.0    \
   }
 
 typedef struct flatpose_result {
@@ -230,9 +239,11 @@ typedef struct flatpose_result {
   int64_t total_us;
   uint64_t peak_bytes;
   uint64_t digest; /* of all that was found; the same on every machine and any number of threads */
+  double rival_score;         /* the best of another pose in the place of a match; 0: none */
+  double best_rejected_score; /* of what became no match: how near a miss, or a rival, came */
 } flatpose_result;
 #define FLATPOSE_RESULT_INIT \
-  { sizeof(flatpose_result), 0, 0, 0, 0.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(flatpose_result), 0, 0, 0, 0.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0 }
 
 typedef struct flatpose_match {
   size_t struct_size;
@@ -256,6 +267,23 @@ flatpose_status flatpose_locate(flatpose_finder* finder, const flatpose_part* pa
 /* A match of the finder's last search, in the order that was asked for. */
 flatpose_status flatpose_match_at(const flatpose_finder* finder, int32_t index,
                                   flatpose_match* match);
+
+/* Where a tool goes at a part, and which equivalent of a symmetric part is told. */
+typedef struct flatpose_pick {
+  size_t struct_size;
+  flatpose_pose object_T_pick; /* default: the object's own origin and axes */
+  int32_t has_preferred_angle; /* default: the equivalent that the search gives */
+  double preferred_angle_deg;  /* -360 to 360, from the frame's x to its y */
+} flatpose_pick;
+#define FLATPOSE_PICK_INIT \
+  { sizeof(flatpose_pick), {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, 0, 0.0 }
+
+/* As flatpose_match_at(), of the pick: its pose, and sigma at its place (farther from the middle of
+ * the part it is larger) and about its axes. A turn that is free was chosen, not found: it adds
+ * nothing to sigma. With a preferred angle the equivalent is told whose pick's x, seen in the
+ * frame's xy plane, stands nearest to it. */
+flatpose_status flatpose_pick_at(const flatpose_finder* finder, int32_t index,
+                                 const flatpose_pick* pick, flatpose_match* match);
 
 /* ---- teach ---------------------------------------------------------------------------------- */
 

@@ -8,8 +8,9 @@
 namespace flatpose::c_api {
 namespace {
 
-// A rotation as a controller may have rounded it.
 constexpr double kDriftMax = 1e-3;
+
+}  // namespace
 
 Status from_c(const flatpose_pose& pose, Pose& out) noexcept {
   for (std::size_t i = 0; i < 9; ++i) out.rotation.m[i] = pose.rotation[i];
@@ -26,8 +27,6 @@ Status from_c(const flatpose_pose& pose, Pose& out) noexcept {
   out.rotation = orthonormalized(out.rotation);
   return Status::kOk;
 }
-
-}  // namespace
 
 Status from_c(const flatpose_scan* scan, SeenScan& out) noexcept {
   flatpose_scan given = FLATPOSE_SCAN_INIT;

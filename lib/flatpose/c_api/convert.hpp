@@ -29,6 +29,9 @@ struct SeenScan {
   bool is_in_work = false;
 };
 
+/// A rotation as a controller may have rounded it becomes one.
+/// Fails: kInvalidArgument (no rotation), kNotFinite.
+[[nodiscard]] Status from_c(const flatpose_pose& pose, Pose& out) noexcept;
 /// Fails: kInvalidArgument, kBadVersion, kNotFinite (a work plane that is no rigid transform).
 [[nodiscard]] Status from_c(const flatpose_scan* scan, SeenScan& out) noexcept;
 /// Fails: kInvalidArgument.

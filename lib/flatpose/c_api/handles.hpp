@@ -1,6 +1,7 @@
 #pragma once
 // What the opaque handles are: objects at the beginning of the caller's memory.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <new>
@@ -17,6 +18,8 @@ struct flatpose_finder {
   flatpose::locate::Locator locator;
   flatpose::teach::Teacher teacher;
   flatpose::locate::LocateResult result;
+  flatpose::model::Symmetry symmetry;  // of the part that the result is of
+  std::array<flatpose::Region, flatpose::locate::kExclusionCountMax> exclusions;  // of a call
   bool can_teach = false;
 };
 

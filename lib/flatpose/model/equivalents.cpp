@@ -66,6 +66,14 @@ double turn_to_angle_rad(const Rotation& face_R_object, const Symmetry& symmetry
   return best_rad;
 }
 
+Pose told_at_angle(const Rotation& face_R_object, const Symmetry& symmetry,
+                   const Pose& object_T_told, double angle_rad) noexcept {
+  if (symmetry.order == 1) return object_T_told;
+  const double turn_rad =
+      turn_to_angle_rad(face_R_object, symmetry, object_T_told.rotation, angle_rad);
+  return turned_about_symmetry({}, symmetry, turn_rad) * object_T_told;
+}
+
 Pose turned_about_symmetry(const Pose& face_T_object, const Symmetry& symmetry,
                            double angle_rad) noexcept {
   const Rotation turn = rotation_about_z(angle_rad);

@@ -27,4 +27,9 @@ namespace flatpose::model {
 [[nodiscard]] double turn_to_angle_rad(const Rotation& face_R_object, const Symmetry& symmetry,
                                        const Rotation& object_R_told, double angle_rad) noexcept;
 
+/// `object_T_told` on the equivalent that turn_to_angle_rad() prefers, seen from the object as it
+/// was found.
+[[nodiscard]] Pose told_at_angle(const Rotation& face_R_object, const Symmetry& symmetry,
+                                 const Pose& object_T_told, double angle_rad) noexcept;
+
 }  // namespace flatpose::model

@@ -25,10 +25,9 @@ Vec3 without_free_axis(Vec3 sigma_rad, const Rotation& object_R_reported) noexce
 // The part turned into the equivalent that is preferred, then the pick.
 Pose object_T_told(const locate::Match& match, const model::Symmetry& symmetry,
                    const Pose& object_T_pick, const ReportRule& rule) noexcept {
-  if (!rule.preferred_angle_rad || symmetry.order == 1) return object_T_pick;
-  const double turn_rad = model::turn_to_angle_rad(
-      match.face_T_object.rotation, symmetry, object_T_pick.rotation, *rule.preferred_angle_rad);
-  return model::turned_about_symmetry({}, symmetry, turn_rad) * object_T_pick;
+  if (!rule.preferred_angle_rad) return object_T_pick;
+  return model::told_at_angle(match.face_T_object.rotation, symmetry, object_T_pick,
+                              *rule.preferred_angle_rad);
 }
 
 }  // namespace

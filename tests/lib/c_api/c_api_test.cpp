@@ -7,42 +7,21 @@
 #include <vector>
 
 #include "flatpose/flatpose.h"
+#include "tests/lib/c_api/finder.hpp"
 #include "tests/lib/locate/simulated.hpp"
 
 namespace flatpose {
 namespace {
 
-flatpose_limits small(bool can_teach = false) {
-  flatpose_limits limits = FLATPOSE_LIMITS_INIT;
-  limits.scan_width_px = 300;
-  limits.scan_height_px = 250;
-  limits.cell_count = 120'000;
-  limits.can_teach = can_teach ? 1 : 0;
-  return limits;
-}
+using test::c_limits;
+using test::c_scan;
 
-flatpose_scan to_c(const RangeImageView& view) {
-  flatpose_scan scan = FLATPOSE_SCAN_INIT;
-  scan.x_mm = view.x_mm;
-  scan.y_mm = view.y_mm;
-  scan.z_mm = view.z_mm;
-  scan.width_px = view.width_px;
-  scan.height_px = view.height_px;
-  scan.pixel_stride_bytes = view.pixel_stride_bytes;
-  scan.row_stride_bytes = view.row_stride_bytes;
-  return scan;
-}
-
-/// A finder in memory of odd alignment, a part taught through the API, and scans to look in.
+/// A finder, a part taught through the API, and scans to look in.
 class CApi : public testing::Test {
  protected:
   void SetUp() override {
-    const flatpose_limits limits = small(true);
-    memory_.resize(flatpose_required_bytes(&limits) + 1);
-    ASSERT_EQ(flatpose_init(&limits, memory_.data() + 1, memory_.size() - 1, &finder_),
-              FLATPOSE_STATUS_OK);
     part_memory_.resize(flatpose_part_required_bytes());
-    const flatpose_scan scan = to_c(lone_.view());
+    const flatpose_scan scan = c_scan(lone_.view());
     const flatpose_scan* const scans[] = {&scan};
     flatpose_teach_config config = FLATPOSE_TEACH_CONFIG_INIT;
     config.name = "pad";
@@ -58,9 +37,9 @@ class CApi : public testing::Test {
 
   const sim::SimulatedScan lone_ = test::simulated("single", "pad", test::clean_sensor(), 1);
   const sim::SimulatedScan other_ = test::simulated("single", "pad", test::clean_sensor(), 2);
-  std::vector<std::byte> memory_;
   std::vector<std::byte> part_memory_;
-  flatpose_finder* finder_ = nullptr;
+  test::CFinder taught_{true};
+  flatpose_finder* const finder_ = taught_.handle;
   flatpose_part* part_ = nullptr;
   flatpose_result result_ = FLATPOSE_RESULT_INIT;
 };
@@ -73,7 +52,7 @@ TEST_F(CApi, TeachesAndFindsWhatTheLibraryItselfDoes) {
   ASSERT_EQ(locating.run(taught.part, other_.view()), Status::kOk);
   ASSERT_EQ(locating.result.match_count, 1);
 
-  ASSERT_EQ(locate(to_c(other_.view())), FLATPOSE_STATUS_OK);
+  ASSERT_EQ(locate(c_scan(other_.view())), FLATPOSE_STATUS_OK);
   EXPECT_EQ(result_.outcome, FLATPOSE_OUTCOME_OK);
   EXPECT_EQ(result_.digest, locate::digest(locating.result));
   EXPECT_EQ(result_.hypothesis_count, locating.result.hypothesis_count);
@@ -118,7 +97,7 @@ TEST_F(CApi, APartGoesThroughItsFile) {
 
 TEST_F(CApi, AWorkPlaneIsTheFrameOfThePose) {
   const flatpose_pose shifted = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {10.0, 20.0, 30.0}};
-  flatpose_scan scan = to_c(other_.view());
+  flatpose_scan scan = c_scan(other_.view());
   ASSERT_EQ(locate(scan), FLATPOSE_STATUS_OK);
   flatpose_match in_scan = FLATPOSE_MATCH_INIT, in_work = FLATPOSE_MATCH_INIT;
   ASSERT_EQ(flatpose_match_at(finder_, 0, &in_scan), FLATPOSE_STATUS_OK);
@@ -135,7 +114,7 @@ TEST_F(CApi, AWorkPlaneIsTheFrameOfThePose) {
 }
 
 TEST_F(CApi, ARegionBoundsTheOrigin) {
-  const flatpose_scan scan = to_c(other_.view());
+  const flatpose_scan scan = c_scan(other_.view());
   ASSERT_EQ(locate(scan), FLATPOSE_STATUS_OK);
   flatpose_match match = FLATPOSE_MATCH_INIT;
   ASSERT_EQ(flatpose_match_at(finder_, 0, &match), FLATPOSE_STATUS_OK);
@@ -183,7 +162,7 @@ flatpose_host host_of(Asked& asked) {
 }
 
 TEST_F(CApi, TimeHandsAndCancelAreTheHosts) {
-  const flatpose_scan scan = to_c(other_.view());
+  const flatpose_scan scan = c_scan(other_.view());
   ASSERT_EQ(locate(scan), FLATPOSE_STATUS_OK);
   const std::uint64_t digest = result_.digest;
   Asked asked;
@@ -210,9 +189,9 @@ TEST_F(CApi, TimeHandsAndCancelAreTheHosts) {
 }
 
 TEST_F(CApi, NothingOfTheLastSearchIsLeftAfterARefusal) {
-  ASSERT_EQ(locate(to_c(other_.view())), FLATPOSE_STATUS_OK);
+  ASSERT_EQ(locate(c_scan(other_.view())), FLATPOSE_STATUS_OK);
   ASSERT_EQ(result_.match_count, 1);
-  flatpose_scan broken = to_c(other_.view());
+  flatpose_scan broken = c_scan(other_.view());
   broken.z_mm = nullptr;
   EXPECT_EQ(locate(broken), FLATPOSE_STATUS_INVALID_ARGUMENT);
   EXPECT_EQ(result_.match_count, 0);
@@ -221,7 +200,7 @@ TEST_F(CApi, NothingOfTheLastSearchIsLeftAfterARefusal) {
 }
 
 TEST_F(CApi, BadArgumentsAreRefused) {
-  const flatpose_scan scan = to_c(other_.view());
+  const flatpose_scan scan = c_scan(other_.view());
   EXPECT_EQ(flatpose_locate(nullptr, part_, &scan, nullptr, nullptr, &result_),
             FLATPOSE_STATUS_INVALID_ARGUMENT);
   EXPECT_EQ(flatpose_locate(finder_, nullptr, &scan, nullptr, nullptr, &result_),
@@ -258,7 +237,7 @@ TEST_F(CApi, BadArgumentsAreRefused) {
 }
 
 TEST_F(CApi, StructsOfEarlierCallersAreReadAndOfLaterOnesRefused) {
-  const flatpose_scan scan = to_c(other_.view());
+  const flatpose_scan scan = c_scan(other_.view());
   flatpose_config config = FLATPOSE_CONFIG_INIT;
   config.region.kind = 99;  // beyond what an earlier caller's struct would hold
   config.struct_size = offsetof(flatpose_config, region);
@@ -278,7 +257,7 @@ TEST_F(CApi, StructsOfEarlierCallersAreReadAndOfLaterOnesRefused) {
 }
 
 TEST(CApiLimits, SayWhatMemoryIsNeeded) {
-  flatpose_limits limits = small();
+  flatpose_limits limits = c_limits();
   const std::size_t bytes = flatpose_required_bytes(&limits);
   ASSERT_GT(bytes, 0U);
   std::vector<std::byte> memory(bytes);
@@ -291,7 +270,7 @@ TEST(CApiLimits, SayWhatMemoryIsNeeded) {
   EXPECT_EQ(flatpose_required_bytes(&limits), 0U);
   EXPECT_EQ(flatpose_init(&limits, memory.data(), bytes, &finder),
             FLATPOSE_STATUS_INVALID_ARGUMENT);
-  limits = small();
+  limits = c_limits();
   limits.cell_count = 0;
   EXPECT_EQ(flatpose_required_bytes(&limits), 0U);
   EXPECT_EQ(flatpose_required_bytes(nullptr), 0U);
