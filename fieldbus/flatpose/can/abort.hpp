@@ -20,7 +20,7 @@ enum class Abort : std::uint32_t {
   kValue = 0x06090030,         ///< No such value.
   kLocalControl = 0x08000021,  ///< Another master holds the lease: nothing was applied.
   kDeviceState = 0x08000022,   ///< Not while it is so: a PDO's times while it is valid, a trigger
-                               ///< that the handshake does not have.
+                               ///< that the handshake does not have, FD on a classic interface.
 };
 
 }  // namespace flatpose::can

@@ -15,6 +15,7 @@ Status Device::init(const Config& config, std::int64_t now_us) noexcept {
   config_ = config;
   now_us_ = now_us;
   bus_ = BusState::kActive;
+  carries_fd_ = config.carries_fd;
   judgement_ = {};
   spent_number_ = 0;
   report_ = report_of(machine_.snapshot(master()), judgement_);
@@ -42,12 +43,21 @@ void Device::enter(NetworkState state, std::int64_t now_us) noexcept {
   has_rpdo_ = false;
   now_us_ = std::max(now_us_, now_us);
   for (int i = 0; i < kTpdoCount; ++i) restart_pdo(i);
+  restart_fd();
 }
 
 void Device::restart_pdo(int index) noexcept {
   if (!allows_pdo(state_)) return tpdos_[index].stop();
   tpdos_[index].restart(parameters_.tpdos[index], now_us_);
   tpdos_[index].event();
+}
+
+void Device::restart_fd() noexcept {
+  fd_bytes_ = fd_bytes(machine_.snapshot(master()), judgement_);
+  looked_us_ = now_us_;
+  if (!allows_pdo(state_)) return fd_pdo_.stop();
+  fd_pdo_.restart(parameters_.fd, now_us_);
+  fd_pdo_.event();
 }
 
 job::Outputs Device::process(std::int64_t now_us, const Inputs& inputs) noexcept {
@@ -86,6 +96,7 @@ void Device::pass_time() noexcept {
 
 std::int64_t Device::next_us() const noexcept {
   std::int64_t next = std::min({producer_.next_us(), consumer_.next_us(), sdo_.next_us()});
+  if (carries_fd_) next = std::min(next, fd_pdo_.next_us());
   for (const TransmitPdo& tpdo : tpdos_) next = std::min(next, tpdo.next_us());
   return next;
 }
@@ -93,6 +104,7 @@ std::int64_t Device::next_us() const noexcept {
 // --- what comes in
 
 void Device::take_bus(const BusEvent& event) noexcept {
+  carries_fd_ = event.carries_fd;
   if (event.has_lost_frames) log_.pulse(Fault::kFramesLost);
   if (event.state == BusState::kErrorPassive) {
     log_.raise(Fault::kErrorPassive);
@@ -106,7 +118,8 @@ void Device::take_bus(const BusEvent& event) noexcept {
 }
 
 void Device::take_frame(const Frame& frame) noexcept {
-  if (frame.is_extended || frame.is_remote || frame.size > kFrameBytesMax) return;
+  const bool is_classic = !frame.is_fd && frame.size <= kClassicBytesMax;
+  if (!is_classic || frame.is_extended || frame.is_remote) return;
   if (frame.id == kNmtId) return take_network_command(frame);
   if (frame.id == kSyncId) return take_sync();
   if (frame.id == kRpdoBase + config_.node) return take_rpdo(frame);
@@ -141,6 +154,7 @@ void Device::take_sync() noexcept {
   if (!was_run_) run({});
   look();
   for (TransmitPdo& tpdo : tpdos_) tpdo.sync();
+  fd_pdo_.sync();
 }
 
 void Device::take_heartbeat(const Frame& frame) noexcept {
@@ -154,7 +168,7 @@ void Device::take_heartbeat(const Frame& frame) noexcept {
 
 void Device::take_rpdo(const Frame& frame) noexcept {
   if (!allows_pdo(state_) || !parameters_.rpdo_is_valid) return;
-  if (frame.size < kFrameBytesMax) return log_.raise(Fault::kCommandShort);
+  if (frame.size < kClassicBytesMax) return log_.raise(Fault::kCommandShort);
   log_.clear(Fault::kCommandShort);
   if (!is_synchronous(parameters_.rpdo_type)) return take_command(frame);
   rpdo_ = frame;
@@ -196,7 +210,7 @@ job::Verdict Device::command(const job::CommandImage& image, bool touches_number
 }
 
 void Device::take_sdo(const Frame& frame) noexcept {
-  if (!allows_sdo(state_) || frame.size != kFrameBytesMax) return;
+  if (!allows_sdo(state_) || frame.size != kClassicBytesMax) return;
   hear();
   const SdoServer::Step step = sdo_.take(frame, now_us_);
   std::array<std::uint8_t, kObjectBytesMax> bytes{};
@@ -226,14 +240,27 @@ void Device::look() noexcept {
   const job::Snapshot snapshot = machine_.snapshot(master());
   tell_fault(snapshot);
   Report fresh = report_of(snapshot, judgement_);
-  const bool is_new = !is_same_result(fresh, report_);
   const std::int32_t sequence = report_[ReportField::kSequence];
-  fresh[ReportField::kSequence] = is_new ? (sequence + 1) & 0xff : sequence;
+  fresh[ReportField::kSequence] = is_same_result(fresh, report_) ? sequence : (sequence + 1) & 0xff;
+  look_at_fd(snapshot, fresh);
   if (fresh == report_) return;
+  const bool is_new = fresh[ReportField::kSequence] != sequence;
   const bool concerns_pose = is_new && (has_pose(fresh) || has_pose(report_));
   report_ = fresh;
   tpdos_[0].event();
   for (int i = 1; i < kTpdoCount && concerns_pose; ++i) tpdos_[i].event();
+}
+
+// The FD frame tells more: what differs there alone is another result too.
+void Device::look_at_fd(const job::Snapshot& snapshot, Report& fresh) noexcept {
+  if (!parameters_.fd.is_valid) return;
+  const FdBytes before = fd_bytes_;
+  fd_bytes_ = fd_bytes(snapshot, judgement_);
+  looked_us_ = now_us_;
+  std::int32_t& sequence = fresh[ReportField::kSequence];
+  const bool is_counted = sequence != report_[ReportField::kSequence];
+  if (!is_counted && !is_same_result(fd_bytes_, before)) sequence = (sequence + 1) & 0xff;
+  if (!(fresh == report_) || !is_same_but_age(fd_bytes_, before)) fd_pdo_.event();
 }
 
 void Device::tell_fault(const job::Snapshot& snapshot) noexcept {
@@ -250,33 +277,47 @@ void Device::tell_fault(const job::Snapshot& snapshot) noexcept {
   log_.raise(Fault::kAnswer, code, detail);
 }
 
+// The time of sending may be later than that of what was last taken in, which stays as it is.
 bool Device::next_frame(std::int64_t now_us, Frame& frame) noexcept {
-  now_us_ = std::max(now_us_, now_us);
+  now_us = std::max(now_us_, now_us);
   frame = {};
-  if (owes_boot_up_ || producer_.is_due(now_us_)) {
+  if (owes_boot_up_ || producer_.is_due(now_us)) {
     frame.id = kHeartbeatBase + config_.node;
     frame.size = 1;
     frame.data[0] = owes_boot_up_ ? std::uint8_t{0} : static_cast<std::uint8_t>(state_);
-    if (!owes_boot_up_) producer_.sent(now_us_);
+    if (!owes_boot_up_) producer_.sent(now_us);
     owes_boot_up_ = false;
     return true;
   }
-  frame.size = kFrameBytesMax;
   if (allows_emergency(state_) && log_.has_message()) {
-    frame.data = log_.take_message();
+    frame.fill(log_.take_message());
     frame.id = kEmergencyBase + config_.node;
     if (parameters_.emergency_is_valid) return true;
   }
+  if (next_fd(now_us, frame)) return true;
   for (int i = 0; i < kTpdoCount && allows_pdo(state_); ++i) {
-    if (!tpdos_[i].is_due(now_us_)) continue;
-    tpdos_[i].sent(now_us_);
+    if (!tpdos_[i].is_due(now_us)) continue;
+    tpdos_[i].sent(now_us);
     frame.id = tpdo_id(i, config_.node);
-    frame.data = tpdo_bytes(report_, i);
+    frame.fill(tpdo_bytes(report_, i));
     return true;
   }
   if (!allows_sdo(state_) || !sdo_.has_answer()) return false;
   frame.id = kSdoAnswerBase + config_.node;
-  frame.data = sdo_.take_answer();
+  frame.fill(sdo_.take_answer());
+  return true;
+}
+
+bool Device::next_fd(std::int64_t now_us, Frame& frame) noexcept {
+  if (!allows_pdo(state_) || !carries_fd_ || !fd_pdo_.is_due(now_us)) return false;
+  fd_pdo_.sent(now_us);
+  FdBytes bytes = fd_bytes_;
+  bytes[0] = static_cast<std::uint8_t>(report_[ReportField::kSequence]);
+  grow_older(bytes, now_us - looked_us_);
+  frame.id = parameters_.fd_id;
+  frame.is_fd = true;
+  frame.has_bit_rate_switch = config_.fd_bit_rate_switch;
+  frame.fill(bytes);
   return true;
 }
 

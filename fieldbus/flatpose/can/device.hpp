@@ -14,6 +14,9 @@
 //   SDO         the whole dictionary, expedited and segmented
 //   RPDO1       a command in eight bytes; a new command_number triggers, as everywhere
 //   TPDO1..4    state and result (report.hpp), at events or with SYNC
+//   FD frame    the whole result in one (fd_report.hpp), as the TPDOs and before them; off at start
+//               unless the config says otherwise, for a classic controller on the bus answers FD
+//               frames with error frames. What FD frames others send is none of a node's.
 //   EMCY        see emergency.hpp
 //   heartbeat   our own; and the master's, whose loss cancels what it asked for
 //
@@ -33,6 +36,7 @@
 #include "flatpose/can/config.hpp"
 #include "flatpose/can/dictionary.hpp"
 #include "flatpose/can/emergency.hpp"
+#include "flatpose/can/fd_report.hpp"
 #include "flatpose/can/frame.hpp"
 #include "flatpose/can/heartbeat.hpp"
 #include "flatpose/can/network_state.hpp"
@@ -50,6 +54,7 @@ enum class BusState : std::uint8_t { kActive, kErrorPassive, kOff };
 struct BusEvent {
   BusState state = BusState::kActive;
   bool has_lost_frames = false;  ///< Frames came that could not be read.
+  bool carries_fd = false;       ///< The link can send FD frames.
 };
 
 /// At most one of each; null: none.
@@ -74,6 +79,9 @@ class Device {
   /// The next frame that may go out now, in the order of their weight.  Returns whether there is
   /// one. Do not ask while the bus is off.
   [[nodiscard]] bool next_frame(std::int64_t now_us, Frame& frame) noexcept;
+
+  /// The FD frame that next_frame() gave found no room: it is made anew, of then.
+  void take_back_fd() noexcept { fd_pdo_.not_sent(); }
 
   /// Call process(), then next_frame(), at this time at the latest.
   [[nodiscard]] std::int64_t next_us() const noexcept;
@@ -100,7 +108,10 @@ class Device {
   [[nodiscard]] job::Verdict command(const job::CommandImage& image, bool touches_number,
                                      bool touches_control) noexcept;
   void look() noexcept;
+  void look_at_fd(const job::Snapshot& snapshot, Report& fresh) noexcept;
   void restart_pdo(int index) noexcept;
+  void restart_fd() noexcept;
+  [[nodiscard]] bool next_fd(std::int64_t now_us, Frame& frame) noexcept;
   void tell_fault(const job::Snapshot& snapshot) noexcept;
   [[nodiscard]] job::Address master() const noexcept { return config_.master; }
 
@@ -137,6 +148,10 @@ class Device {
   Judgement judgement_;
   std::uint16_t spent_number_ = 0;  ///< Refused before the machine saw it.
   Report report_;
+  TransmitPdo fd_pdo_;
+  FdBytes fd_bytes_{};  ///< While it is on: of the last look, sequence 0.
+  std::int64_t looked_us_ = 0;
+  bool carries_fd_ = false;
   std::uint16_t told_fault_of_ = 0;
 };
 

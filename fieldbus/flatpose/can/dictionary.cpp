@@ -40,6 +40,7 @@ constexpr Group kGroups[] = {
     {kSmallCommandIndex, "Command, small", ObjectCode::kRecord},
     {kReportIndex, "Result, small", ObjectCode::kRecord},
     {kWholeCommandIndex, "Command, whole", ObjectCode::kVariable},
+    {kFdReportIndex, "Result, whole, in a CAN FD frame", ObjectCode::kRecord},
     {kResultIndex, "Result", ObjectCode::kRecord},
     {kWholeResultIndex, "Result, whole", ObjectCode::kVariable},
     {kFurtherIndex, "Further match 1", ObjectCode::kRecord},
@@ -141,13 +142,16 @@ Abort find_mapping(std::uint16_t index, std::uint8_t subindex, Object& object) n
   return Abort::kNone;
 }
 
-Abort find_tpdo(std::uint16_t index, std::uint8_t subindex, Object& object) noexcept {
+// Of a TPDO, and of the whole result's frame, which is off at start unless the config has it on.
+Abort find_transmit(std::uint16_t index, std::uint8_t subindex, Object& object) noexcept {
   const TpdoSettings start;
+  const bool is_fd = index == kFdReportIndex;
+  const std::uint32_t id = is_fd ? kFdReportBase | kNotValid : tpdo_id(index - 0x1800, 0);
   switch (subindex) {
     case 0: object = count_of(index, 5); return Abort::kNone;
     case 1:
-      object = {index,       1,          "COB-ID used by TPDO",
-                kUnsigned32, kReadWrite, tpdo_id(index - 0x1800, 0) | kNoRemote,
+      object = {index,       1,          is_fd ? "COB-ID used by the frame" : "COB-ID used by TPDO",
+                kUnsigned32, kReadWrite, id | kNoRemote,
                 true};
       return Abort::kNone;
     case 2: object = {index, 2, "Transmission type", kUnsigned8, kReadWrite, start.type}; break;
@@ -213,7 +217,8 @@ Abort find_object(std::uint16_t index, std::uint8_t subindex, Object& object) no
   if (index == 0x1003 && subindex > 0) return find_history(subindex, object);
   if (index == 0x1600 || (index >= 0x1a00 && index < 0x1a00 + kTpdoCount))
     return find_mapping(index, subindex, object);
-  if (index >= 0x1800 && index < 0x1800 + kTpdoCount) return find_tpdo(index, subindex, object);
+  if (index == kFdReportIndex || (index >= 0x1800 && index < 0x1800 + kTpdoCount))
+    return find_transmit(index, subindex, object);
   if (index == kReportIndex) return find_report(subindex, object);
   bool has_index = false;
   for (const Object& known : kObjects) {

@@ -5,7 +5,8 @@
 // can be torn.
 //
 //   2000h command   2001h test values   2002h command, small   2003h result, small (see report.hpp)
-//   2004h command, whole   2010h result   2011h result, whole   2020h.. further matches
+//   2004h command, whole   2006h when the whole result goes out in an FD frame (see fd_report.hpp)
+//   2010h result   2011h result, whole   2020h.. further matches
 
 #include <cstdint>
 #include <span>

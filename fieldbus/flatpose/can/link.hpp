@@ -15,13 +15,15 @@ class Link {
     Kind kind = Kind::kNothing;
     Frame frame;
     BusEvent bus;  ///< What the controller tells of itself.
+    /// When it came, on the machine's clock, never after it was received; kNever_us: not known.
+    std::int64_t received_us = kNever_us;
   };
 
   /// The next that has come; does not wait.
   [[nodiscard]] virtual Received receive() noexcept = 0;
 
   /// Returns whether it was taken. If not there is no room at the moment, or no bus: nothing was
-  /// sent, and it may be offered again.
+  /// sent, and it may be offered again. An FD frame that the link does not carry is taken and lost.
   [[nodiscard]] virtual bool send(const Frame& frame) noexcept = 0;
 
  protected:

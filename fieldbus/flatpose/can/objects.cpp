@@ -149,6 +149,10 @@ Abort Device::write_object(const SdoServer::Step& step) noexcept {
   }
   const Parameters before = parameters_;
   const Abort outcome = parameters_.write(step.index, step.subindex, config_.node, value);
+  if (parameters_.fd.is_valid && !before.fd.is_valid && !carries_fd_) {
+    parameters_ = before;
+    return Abort::kDeviceState;
+  }
   if (step.index == 0x1016 && outcome == Abort::kNone) {
     consumer_.restart(parameters_.watched_node, parameters_.watched_ms);
     log_.clear(Fault::kMasterSilent);
@@ -158,6 +162,7 @@ Abort Device::write_object(const SdoServer::Step& step) noexcept {
   for (int i = 0; i < kTpdoCount; ++i) {
     if (!(parameters_.tpdos[i] == before.tpdos[i])) restart_pdo(i);
   }
+  if (!(parameters_.fd == before.fd)) restart_fd();
   return outcome;
 }
 

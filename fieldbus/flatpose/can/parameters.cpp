@@ -43,6 +43,18 @@ Abort write_tpdo(TpdoSettings& tpdo, std::uint8_t subindex, std::uint32_t id,
   }
 }
 
+// The identifier stays while the frame exists.
+Abort write_fd_id(TpdoSettings& fd, std::uint16_t& id, std::uint8_t node,
+                  std::uint32_t value) noexcept {
+  const std::uint32_t fresh = value & ~(kNotValid | kNoRemote);
+  if ((value & kNoRemote) == 0 || !is_fd_report_id(fresh, node)) return Abort::kValue;
+  const bool is_valid = (value & kNotValid) == 0;
+  if (is_valid && fd.is_valid && fresh != id) return Abort::kDeviceState;
+  fd.is_valid = is_valid;
+  id = static_cast<std::uint16_t>(fresh);
+  return Abort::kNone;
+}
+
 }  // namespace
 
 Parameters Parameters::at_start(const Config& config) noexcept {
@@ -50,6 +62,8 @@ Parameters Parameters::at_start(const Config& config) noexcept {
   made.watched_node = config.master;
   made.watched_ms = config.master_silence_ms;
   made.heartbeat_ms = config.heartbeat_ms;
+  made.fd.is_valid = config.fd_frame;
+  made.fd_id = fd_report_id(config);
   return made;
 }
 
@@ -61,6 +75,7 @@ bool Parameters::read(std::uint16_t index, std::uint8_t subindex, std::uint8_t n
     return true;
   }
   switch (index) {
+    case kFdReportIndex: value = read_tpdo(fd, subindex, fd_id); return true;
     case 0x1014: value = id_value(kEmergencyBase + node, emergency_is_valid); return true;
     case 0x1016: value = static_cast<std::uint32_t>(watched_node << 16) | watched_ms; return true;
     case 0x1017: value = heartbeat_ms; return true;
@@ -77,6 +92,9 @@ Abort Parameters::write(std::uint16_t index, std::uint8_t subindex, std::uint8_t
   if (tpdo >= 0 && tpdo < kTpdoCount)
     return write_tpdo(tpdos[tpdo], subindex, tpdo_id(tpdo, node), value);
   switch (index) {
+    case kFdReportIndex:
+      return subindex == 1 ? write_fd_id(fd, fd_id, node, value)
+                           : write_tpdo(fd, subindex, fd_id, value);
     case 0x1005: return value == kSyncId ? Abort::kNone : Abort::kValue;
     case 0x1014:
       if (!is_id(value, kEmergencyBase + node)) return Abort::kValue;

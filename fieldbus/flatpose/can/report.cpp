@@ -72,7 +72,7 @@ constexpr bool frames_are_full() {
   for (const auto& frame : kFrames) {
     int bytes = 0;
     for (const ReportField field : frame) bytes += kLines[static_cast<int>(field) - 1].bytes;
-    if (bytes != kFrameBytesMax) return false;
+    if (bytes != kClassicBytesMax) return false;
   }
   return true;
 }
@@ -124,27 +124,35 @@ const ReportLine& line_of(ReportField field) noexcept {
 
 std::span<const ReportField> fields_of_tpdo(int tpdo) noexcept { return kFrames[tpdo]; }
 
-Report report_of(const job::Snapshot& snapshot, const Judgement& judgement) noexcept {
+Report head_of(const job::Snapshot& snapshot, const Judgement& judgement) noexcept {
   constexpr unsigned kOfTheResult = job::kAck | job::kDone | job::kValid | job::kScanRepeated;
   Report report;
   unsigned bits = snapshot.bits;
   job::Answer answer = snapshot.answer;
   show_no_pose(report);
-  if (!snapshot.result_is_readers) {
+  if (snapshot.result_is_readers) {
+    report[Line::kDoneNumber] = snapshot.done_number;
+  } else {
     answer = job::Answer::kPending;
     bits &= ~(kOfTheResult & ~(snapshot.reader_is_owner ? unsigned{job::kAck} : 0U));
-  } else {
-    report[Line::kDoneNumber] = snapshot.done_number;
-    if (snapshot.match.index != 0 && !show_pose(snapshot, report)) {
-      show_no_pose(report);
-      answer = job::Answer::kOutOfRange;
-      bits &= ~unsigned{job::kValid};
-    }
   }
   report[Line::kStatus] = static_cast<std::int32_t>(answer);
   report[Line::kBits] = static_cast<std::int32_t>(bits);
   report[Line::kJudgedNumber] = judgement.number;
   report[Line::kRefusedStatus] = static_cast<std::int32_t>(judgement.refusal);
+  return report;
+}
+
+void show_out_of_range(Report& report) noexcept {
+  show_no_pose(report);
+  report[Line::kStatus] = static_cast<std::int32_t>(job::Answer::kOutOfRange);
+  report[Line::kBits] &= ~static_cast<std::int32_t>(job::kValid);
+}
+
+Report report_of(const job::Snapshot& snapshot, const Judgement& judgement) noexcept {
+  Report report = head_of(snapshot, judgement);
+  if (!snapshot.result_is_readers || snapshot.match.index == 0) return report;
+  if (!show_pose(snapshot, report)) show_out_of_range(report);
   return report;
 }
 
@@ -160,8 +168,8 @@ bool is_same_result(const Report& a, const Report& b) noexcept {
   return true;
 }
 
-std::array<std::uint8_t, kFrameBytesMax> tpdo_bytes(const Report& report, int tpdo) noexcept {
-  std::array<std::uint8_t, kFrameBytesMax> bytes{};
+std::array<std::uint8_t, kClassicBytesMax> tpdo_bytes(const Report& report, int tpdo) noexcept {
+  std::array<std::uint8_t, kClassicBytesMax> bytes{};
   std::size_t at = 0;
   for (const ReportField field : fields_of_tpdo(tpdo)) {
     const std::size_t count = line_of(field).bytes;

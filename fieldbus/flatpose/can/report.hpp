@@ -85,8 +85,15 @@ struct Judgement {
   job::Refusal refusal = job::Refusal::kNone;
 };
 
-/// What the reader of the snapshot may be told: of another's result nothing. The sequence is 0.
+/// What TPDO1 tells, as the registers have it: of another's result nothing. The sequence is 0, and
+/// there is no pose.
+[[nodiscard]] Report head_of(const job::Snapshot& snapshot, const Judgement& judgement) noexcept;
+
+/// The same with the pose, or out_of_range.
 [[nodiscard]] Report report_of(const job::Snapshot& snapshot, const Judgement& judgement) noexcept;
+
+/// The status of a pose that does not fit, in place of it.
+void show_out_of_range(Report& report) noexcept;
 
 /// Whether the report has a pose.
 [[nodiscard]] bool has_pose(const Report& report) noexcept;
@@ -94,7 +101,7 @@ struct Judgement {
 [[nodiscard]] bool is_same_result(const Report& a, const Report& b) noexcept;
 
 /// The bytes of a TPDO.
-[[nodiscard]] std::array<std::uint8_t, kFrameBytesMax> tpdo_bytes(const Report& report,
-                                                                  int tpdo) noexcept;
+[[nodiscard]] std::array<std::uint8_t, kClassicBytesMax> tpdo_bytes(const Report& report,
+                                                                    int tpdo) noexcept;
 
 }  // namespace flatpose::can

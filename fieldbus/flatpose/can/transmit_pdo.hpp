@@ -1,6 +1,6 @@
 #pragma once
-// When a TPDO goes out: at an event, no sooner than its inhibit time allows, again when its event
-// timer has run, or with SYNC (CiA 301, 7.5.2.37).
+// When a TPDO, or the whole result's frame, goes out: at an event, no sooner than its inhibit time
+// allows, again when its event timer has run, or with SYNC (CiA 301, 7.5.2.37).
 
 #include <algorithm>
 #include <cstdint>
@@ -61,6 +61,12 @@ class TransmitPdo {
     is_pending_ = is_released_ = false;
     inhibited_until_us_ = now_us + std::int64_t{settings_.inhibit_100us} * 100;
     timer_us_ = after_timer(now_us);
+  }
+  /// It found no room: it is to be made anew.
+  void not_sent() noexcept {
+    if (!settings_.is_valid) return;
+    (is_by_event() ? is_pending_ : is_released_) = true;
+    inhibited_until_us_ = 0;
   }
   [[nodiscard]] std::int64_t next_us() const noexcept {
     if (!settings_.is_valid || !is_by_event()) return kNever_us;

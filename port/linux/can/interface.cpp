@@ -1,12 +1,13 @@
 #include "port/linux/can/interface.hpp"
 
 #include <libsocketcan.h>
+#include <linux/can.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cerrno>
 
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/modbus/file_descriptor.hpp"
@@ -16,11 +17,22 @@ namespace {
 
 constexpr std::uint32_t kPerKilo = 1000;
 
-bool is_interface_up(const std::string& name) {
+constexpr std::uint32_t kUsualBitRate_per_s = 250'000;
+constexpr std::uint32_t kUsualDataBitRate_per_s = 2'000'000;
+
+bool has_kernel_can() {
+  const FileDescriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
+  return socket.is_open() || (errno != EAFNOSUPPORT && errno != EPROTONOSUPPORT);
+}
+
+void look_at_link(const std::string& name, CanInterface& found) {
   const FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq request{};
   name.copy(request.ifr_name, IFNAMSIZ - 1);
-  return ioctl(socket.get(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
+  found.is_up =
+      ioctl(socket.get(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
+  found.carries_fd =
+      ioctl(socket.get(), SIOCGIFMTU, &request) == 0 && request.ifr_mtu >= int{CANFD_MTU};
 }
 
 std::string kilobits(std::uint32_t bit_rate_per_s) {
@@ -31,10 +43,11 @@ std::string kilobits(std::uint32_t bit_rate_per_s) {
 
 CanInterface look_at_can(const std::string& name) {
   CanInterface found;
-  if (name.size() >= IFNAMSIZ) return found;
+  found.has_kernel_can = has_kernel_can();
+  if (!found.has_kernel_can || name.size() >= IFNAMSIZ) return found;
   found.index = static_cast<int>(if_nametoindex(name.c_str()));
   if (found.index == 0) return found;
-  found.is_up = is_interface_up(name);
+  look_at_link(name, found);
   int state = CAN_STATE_ERROR_ACTIVE;
   found.is_bus_off = can_get_state(name.c_str(), &state) == 0 && state == CAN_STATE_BUS_OFF;
   can_bittiming timing{};
@@ -50,21 +63,45 @@ std::string to_text(const std::string& name, const CanInterface& interface) {
   return interface.is_bus_off ? text + ", which is bus-off" : text;
 }
 
-void check_can(const std::string& subject, const std::string& name, const CanInterface& interface,
-               std::uint32_t expected_bit_rate_per_s) {
+std::string command_for(const std::string& name, const CanInterface& interface,
+                        const CanNeed& need) {
+  const std::string link = "ip link set " + printable(name, IFNAMSIZ);
+  const bool is_virtual = interface.index != 0 && !interface.bit_rate_per_s;
+  if (is_virtual && need.fd && !interface.carries_fd)
+    return link + " down; " + link + " mtu 72; " + link + " up";
+  if (is_virtual) return link + " up";
+  const std::uint32_t rate_per_s = need.bit_rate_per_s != 0
+                                       ? need.bit_rate_per_s
+                                       : interface.bit_rate_per_s.value_or(kUsualBitRate_per_s);
+  const std::string fd =
+      need.fd ? " dbitrate " + std::to_string(kUsualDataBitRate_per_s) + " fd on" : std::string();
+  return (interface.is_up ? link + " down; " : "") + link + " up type can bitrate " +
+         std::to_string(rate_per_s) + fd + " restart-ms 100";
+}
+
+std::optional<CanProblem> problem_of(const std::string& name, const CanInterface& interface,
+                                     const CanNeed& need) {
   const std::string shown = printable(name, IFNAMSIZ);
+  if (!interface.has_kernel_can)
+    return CanProblem{"this kernel has no CAN", "load its module: modprobe can_raw"};
   if (interface.index == 0)
-    throw InputError(subject, "there is no CAN interface " + shown,
-                     "see ip link; a driver may have to be loaded, or the name is another");
-  const bool is_right = expected_bit_rate_per_s == 0 || !interface.bit_rate_per_s ||
-                        *interface.bit_rate_per_s == expected_bit_rate_per_s;
-  if (is_right) return;
-  throw InputError(subject,
-                   shown + " runs at " + kilobits(*interface.bit_rate_per_s) + ", not " +
-                       kilobits(expected_bit_rate_per_s),
-                   "ip link set " + shown + " down; ip link set " + shown +
-                       " up type can bitrate " + std::to_string(expected_bit_rate_per_s) +
-                       " restart-ms 100");
+    return CanProblem{"there is no CAN interface " + shown,
+                      "see ip link; a driver may have to be loaded, or the name is another"};
+  const std::uint32_t rate_per_s = interface.bit_rate_per_s.value_or(need.bit_rate_per_s);
+  if (need.bit_rate_per_s != 0 && rate_per_s != need.bit_rate_per_s)
+    return CanProblem{
+        shown + " runs at " + kilobits(rate_per_s) + ", not " + kilobits(need.bit_rate_per_s),
+        command_for(name, interface, need)};
+  if (need.fd && !interface.carries_fd)
+    return CanProblem{shown + " is classic: it takes no CAN FD frame, which fd_frame asks for",
+                      command_for(name, interface, need)};
+  return {};
+}
+
+void check_can(const std::string& subject, const std::string& name, const CanInterface& interface,
+               const CanNeed& need) {
+  const auto problem = problem_of(name, interface, need);
+  if (problem) throw InputError(subject, problem->what, problem->remedy);
 }
 
 }  // namespace flatpose::port

@@ -10,10 +10,12 @@
 namespace flatpose::port {
 
 struct CanInterface {
-  int index = 0;  ///< 0: there is none of this name.
+  bool has_kernel_can = true;  ///< Else there is nothing more to say.
+  int index = 0;               ///< 0: there is none of this name.
   bool is_up = false;
-  bool is_bus_off = false;                      ///< As far as the driver says.
-  std::optional<std::uint32_t> bit_rate_per_s;  ///< Virtual ones have none.
+  bool is_bus_off = false;                           ///< As far as the driver says.
+  bool carries_fd = false;                           ///< It takes CAN FD frames.
+  std::optional<std::uint32_t> bit_rate_per_s = {};  ///< Virtual ones have none.
 };
 
 [[nodiscard]] CanInterface look_at_can(const std::string& name);
@@ -21,9 +23,27 @@ struct CanInterface {
 /// "can0 at 250 kbit/s", "vcan0", "can0, which is down"
 [[nodiscard]] std::string to_text(const std::string& name, const CanInterface& interface);
 
-/// Fails: InputError naming `subject`: no such interface, or a bit rate that is not the expected
-/// one (0: any is right).
+/// What the config asks of an interface.
+struct CanNeed {
+  std::uint32_t bit_rate_per_s = 0;  ///< 0: any is right.
+  bool fd = false;
+};
+
+/// What is wrong, and what mends it.
+struct CanProblem {
+  std::string what;
+  std::string remedy;
+};
+/// Why a node cannot be on it; none: it can, now or when it is up.
+[[nodiscard]] std::optional<CanProblem> problem_of(const std::string& name,
+                                                   const CanInterface& interface,
+                                                   const CanNeed& need);
+/// "ip link set can0 up type can bitrate 250000 restart-ms 100"
+[[nodiscard]] std::string command_for(const std::string& name, const CanInterface& interface,
+                                      const CanNeed& need);
+
+/// Fails: InputError naming `subject` with the problem, if there is one.
 void check_can(const std::string& subject, const std::string& name, const CanInterface& interface,
-               std::uint32_t expected_bit_rate_per_s);
+               const CanNeed& need);
 
 }  // namespace flatpose::port

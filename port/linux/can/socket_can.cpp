@@ -3,12 +3,17 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -21,9 +26,30 @@ namespace {
 using can::BusState;
 /// Frames passed over in one call at most: error frames that change nothing.
 constexpr int kPassedOverMax = 64;
+/// Two clocks read one after the other belong together when no more than this passed meanwhile.
+constexpr std::int64_t kReading_us = 100;
+constexpr int kReadingsMax = 3;
 
-// What a node listens to; extended and remote frames are none of it.
-bool set_filters(int socket, std::uint8_t node) noexcept {
+std::int64_t us_of(const timespec& time) noexcept {
+  return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
+}
+
+std::int64_t real_now_us() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return us_of(now);
+}
+
+// Of hardware where there are some; without any a frame counts from when it is read.
+void ask_for_stamps(int socket) noexcept {
+  constexpr int kStamps = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE |
+                          SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
+  (void)setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPING, &kStamps, sizeof kStamps);
+}
+
+// What a node listens to; extended and remote frames are none of it. FD frames of others are
+// nothing to a node either, but who is to send them gets them too.
+bool set_filters(int socket, std::uint8_t node, bool carries_fd) noexcept {
   constexpr canid_t kExact = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
   constexpr canid_t kAnyNode = 0x780 | CAN_EFF_FLAG | CAN_RTR_FLAG;
   const can_filter filters[] = {{can::kNmtId, kExact},
@@ -33,7 +59,9 @@ bool set_filters(int socket, std::uint8_t node) noexcept {
                                 {can::kHeartbeatBase, kAnyNode}};
   constexpr can_err_mask_t kErrors = CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
   constexpr int kOn = 1;
-  return setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters, sizeof filters) == 0 &&
+  const int fd = carries_fd ? 1 : 0;
+  return setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &fd, sizeof fd) == 0 &&
+         setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters, sizeof filters) == 0 &&
          setsockopt(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &kErrors, sizeof kErrors) == 0 &&
          setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &kOn, sizeof kOn) == 0;
 }
@@ -45,22 +73,41 @@ bool bind_to(int socket, int index) noexcept {
   return bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
-std::uint32_t drops_in(msghdr& message, std::uint32_t before) noexcept {
-  std::uint32_t drops = before;
+/// What comes beside a frame.
+struct Beside {
+  std::uint32_t drops = 0;
+  CanStamps stamps;
+};
+using Control = std::array<std::uint8_t, CMSG_SPACE(sizeof(std::uint32_t)) +
+                                             CMSG_SPACE(sizeof(scm_timestamping))>;
+
+Beside beside(msghdr& message, std::uint32_t drops_before) noexcept {
+  Beside found{drops_before, {}};
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
-    if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SO_RXQ_OVFL)
-      std::memcpy(&drops, CMSG_DATA(part), sizeof drops);
+    if (part->cmsg_level != SOL_SOCKET) continue;
+    if (part->cmsg_type == SO_RXQ_OVFL)
+      std::memcpy(&found.drops, CMSG_DATA(part), sizeof found.drops);
+    if (part->cmsg_type != SO_TIMESTAMPING || part->cmsg_len < CMSG_LEN(sizeof(scm_timestamping)))
+      continue;
+    scm_timestamping stamps;
+    std::memcpy(&stamps, CMSG_DATA(part), sizeof stamps);
+    found.stamps = {us_of(stamps.ts[0]), us_of(stamps.ts[2])};
   }
-  return drops;
+  return found;
 }
 
-can::Frame frame_of(const can_frame& raw) noexcept {
+// A classic frame has the same layout, in its first 16 bytes.
+static_assert(offsetof(can_frame, data) == offsetof(canfd_frame, data));
+
+can::Frame frame_of(const canfd_frame& raw, bool is_fd) noexcept {
   can::Frame frame;
+  frame.is_fd = is_fd;
+  frame.has_bit_rate_switch = is_fd && (raw.flags & CANFD_BRS) != 0;
   frame.is_extended = (raw.can_id & CAN_EFF_FLAG) != 0;
   frame.is_remote = (raw.can_id & CAN_RTR_FLAG) != 0;
   frame.id = raw.can_id & (frame.is_extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-  frame.size = std::min<std::uint8_t>(raw.can_dlc, can::kFrameBytesMax);
+  frame.size = std::min<std::uint8_t>(raw.len, is_fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN);
   std::copy_n(raw.data, frame.size, frame.data.begin());
   return frame;
 }
@@ -72,20 +119,22 @@ bool is_of_interface(int error) noexcept {
 
 }  // namespace
 
-SocketCan::SocketCan(const std::string& subject, const std::string& interface, std::uint8_t node)
+SocketCan::SocketCan(const std::string& subject, const std::string& interface, std::uint8_t node,
+                     const CanNeed& need)
     : interface_(interface),
       node_(node),
       socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
-  if (!socket_.is_open() && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
-    throw InputError(subject, "this kernel has no CAN", "load its module: modprobe can_raw");
-  if (!socket_.is_open()) throw std::system_error(errno, std::generic_category(), "CAN socket");
+  const int error = errno;
   const CanInterface found = look_at_can(interface);
-  check_can(subject, interface, found, 0);
-  if (!set_filters(socket_.get(), node))
+  check_can(subject, interface, found, need);
+  if (!socket_.is_open()) throw std::system_error(error, std::generic_category(), "CAN socket");
+  carries_fd_ = found.carries_fd;
+  if (!set_filters(socket_.get(), node, carries_fd_))
     throw std::system_error(errno, std::generic_category(), "CAN filters");
   if (!bind_to(socket_.get(), found.index))
     throw InputError(subject, interface + " cannot be used: " + std::strerror(errno),
                      "name a CAN interface");
+  ask_for_stamps(socket_.get());
   is_down_ = !found.is_up;
   if (is_down_ || found.is_bus_off) state_ = BusState::kOff;
   is_told_ = state_ == BusState::kActive;
@@ -96,7 +145,8 @@ can::Link::Received SocketCan::state(BusState state) noexcept {
   is_told_ = true;
   Received told;
   told.kind = Received::Kind::kBus;
-  told.bus = {state, std::exchange(has_lost_frames_, false)};
+  told.bus = {state, std::exchange(has_lost_frames_, false), carries_fd_};
+  told.received_us = clock_.now_us();
   return told;
 }
 
@@ -104,9 +154,11 @@ can::Link::Received SocketCan::state(BusState state) noexcept {
 // number when it is back. What the socket still has to say of before is dropped.
 bool SocketCan::bind_again() noexcept {
   const CanInterface found = look_at_can(interface_);
-  const bool is_bound = found.index != 0 && found.is_up && set_filters(socket_.get(), node_) &&
+  const bool is_bound = found.index != 0 && found.is_up &&
+                        set_filters(socket_.get(), node_, found.carries_fd) &&
                         bind_to(socket_.get(), found.index);
   if (!is_bound) return false;
+  carries_fd_ = found.carries_fd;
   int error = 0;
   socklen_t size = sizeof error;
   (void)getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
@@ -134,6 +186,18 @@ bool SocketCan::take_error_frame(std::uint32_t classes, std::uint8_t controller)
   return std::exchange(state_, fresh) != fresh || has_lost_frames_;
 }
 
+void SocketCan::look_at_clocks() noexcept {
+  std::int64_t now_us = clock_.now_us();
+  std::int64_t real_us = 0;
+  for (int i = 0; i < kReadingsMax; ++i) {
+    const std::int64_t before_us = now_us;
+    real_us = real_now_us();
+    now_us = clock_.now_us();
+    if (now_us - before_us <= kReading_us) break;
+  }
+  arrival_.look(now_us, real_us);
+}
+
 can::Link::Received SocketCan::receive() noexcept {
   if (!is_told_) return state(state_);
   if (is_down_) {
@@ -142,22 +206,29 @@ can::Link::Received SocketCan::receive() noexcept {
     return state(BusState::kActive);
   }
   for (int i = 0; i < kPassedOverMax; ++i) {
-    can_frame raw{};
-    alignas(cmsghdr) std::uint8_t control[CMSG_SPACE(sizeof drop_count_)];
+    canfd_frame raw{};
+    alignas(cmsghdr) Control control;
     iovec place{&raw, sizeof raw};
     msghdr message{};
     message.msg_iov = &place;
     message.msg_iovlen = 1;
-    message.msg_control = control;
+    message.msg_control = control.data();
     message.msg_controllen = sizeof control;
     const ssize_t size = recvmsg(socket_.get(), &message, 0);
-    if (size < 0) return failed(errno);
-    const std::uint32_t drops = drops_in(message, drop_count_);
-    if (drops != std::exchange(drop_count_, drops)) has_lost_frames_ = true;
-    if (size != sizeof raw) continue;
+    if (size < 0) {
+      const int error = errno;
+      arrival_.drained();
+      look_at_clocks();
+      return failed(error);
+    }
+    const Beside found = beside(message, drop_count_);
+    if (found.drops != std::exchange(drop_count_, found.drops)) has_lost_frames_ = true;
+    look_at_clocks();
+    const bool is_fd = size == CANFD_MTU;
+    if (!is_fd && size != CAN_MTU) continue;
     if ((raw.can_id & CAN_ERR_FLAG) == 0) {
       if (has_lost_frames_) is_told_ = false;  // with the next call
-      return {Received::Kind::kFrame, frame_of(raw), {}};
+      return {Received::Kind::kFrame, frame_of(raw, is_fd), {}, arrival_.arrived_us(found.stamps)};
     }
     if (take_error_frame(raw.can_id, raw.data[1])) return state(state_);
   }
@@ -166,12 +237,16 @@ can::Link::Received SocketCan::receive() noexcept {
 
 bool SocketCan::send(const can::Frame& frame) noexcept {
   if (is_down_) return false;
-  can_frame raw{};
+  canfd_frame raw{};
   raw.can_id = frame.id;
-  raw.can_dlc = frame.size;
+  raw.len = frame.size;
+  raw.flags = frame.is_fd && frame.has_bit_rate_switch ? CANFD_BRS : 0;
   std::copy_n(frame.data.begin(), frame.size, raw.data);
-  if (::send(socket_.get(), &raw, sizeof raw, MSG_DONTWAIT) == sizeof raw) return true;
-  if (!is_of_interface(errno)) return false;  // ENOBUFS: the queue of the interface is full
+  const ssize_t size = frame.is_fd ? CANFD_MTU : CAN_MTU;
+  if (::send(socket_.get(), &raw, static_cast<std::size_t>(size), MSG_DONTWAIT) == size)
+    return true;
+  if (frame.is_fd && errno == EINVAL) return true;  // the interface has become a classic one
+  if (!is_of_interface(errno)) return false;        // ENOBUFS: its queue is full
   is_down_ = true;
   state_ = BusState::kOff;
   is_told_ = false;

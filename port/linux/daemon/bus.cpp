@@ -14,6 +14,8 @@ namespace {
 constexpr std::int64_t kAskEvery_us = 500'000;
 /// Ten questions: far more than a slow machine takes between two looks of a search.
 constexpr std::int64_t kLivenessLimit_us = 5'000'000;
+/// A turn takes far less, unless the machine has no time for it.
+constexpr std::int64_t kStall_us = 10'000;
 /// More than both mailboxes hold.
 constexpr int kEventsPerTurn = 16;
 
@@ -82,11 +84,25 @@ void Bus::work() noexcept {
       engine_.ask();
     }
     wait(next_us() - clock_.now_us());
+    if (can_) serve_can(clock_.now_us());
     take_events();
     if (server_) server_->serve(clock_.now_us(), *this);
-    if (clock_.now_us() >= machine_us_) pass_on(machine_.process(clock_.now_us(), {}));
-    if (can_) pass_on(can_->station().serve(clock_.now_us()));  // last: it tells what has changed
+    if (clock_.now_us() >= machine_us_) pass_on(machine_.process(machine_now_us(), {}));
+    if (can_) pass_on(can_->station().tell(clock_.now_us()));
   }
+}
+
+void Bus::serve_can(std::int64_t now_us) noexcept {
+  can_served_us_ = now_us;
+  pass_on(can_->station().serve(now_us));
+}
+
+// The time to call the machine at. Frames bear the time of their arrival: what came before is taken
+// in before, however long this thread stood still.
+std::int64_t Bus::machine_now_us() noexcept {
+  const std::int64_t now_us = clock_.now_us();
+  if (can_ && now_us - can_served_us_ > kStall_us) serve_can(now_us);
+  return now_us;
 }
 
 // The server's own set of sockets is one of what is waited for.
@@ -113,12 +129,12 @@ std::int64_t Bus::next_us() const noexcept {
 
 void Bus::take_events() noexcept {
   if (const job::JobTable* const jobs = engine_.shelf().offered()) {
-    pass_on(machine_.process(clock_.now_us(), {.jobs = jobs}));
+    pass_on(machine_.process(machine_now_us(), {.jobs = jobs}));
     engine_.shelf().adopt();
     engine_.ring();
   }
   for (int i = 0; i < kEventsPerTurn && engine_.take(event_); ++i) {
-    pass_on(machine_.process(clock_.now_us(), {.event = &event_}));
+    pass_on(machine_.process(machine_now_us(), {.event = &event_}));
     if (event_.kind == job::SearchEvent::Kind::kFinished)
       engine_.note_posted(event_.ticket, clock_.now_us());
   }
@@ -131,7 +147,7 @@ void Bus::pass_on(const job::Outputs& outputs) noexcept {
 
 std::size_t Bus::respond(const job::Master& master, const modbus::Adu& adu,
                          std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept {
-  const modbus::Served served = modbus_.serve(clock_.now_us(), master, adu, response);
+  const modbus::Served served = modbus_.serve(machine_now_us(), master, adu, response);
   pass_on(served.outputs);
   return served.bytes;
 }

@@ -40,6 +40,8 @@ class Bus final : private port::Responder {
   [[nodiscard]] job::Address owner() const noexcept override;
   void work() noexcept;
   void wait(std::int64_t time_us) noexcept;
+  void serve_can(std::int64_t now_us) noexcept;
+  [[nodiscard]] std::int64_t machine_now_us() noexcept;
   void take_events() noexcept;
   void pass_on(const job::Outputs& outputs) noexcept;
   [[nodiscard]] std::int64_t next_us() const noexcept;
@@ -53,7 +55,8 @@ class Bus final : private port::Responder {
   std::optional<CanNode> can_;
   job::SearchEvent event_;
   std::int64_t machine_us_ = 0;  ///< When the machine wants to be called.
-  std::int64_t ask_us_ = 0;      ///< When search and source are asked for a sign of life.
+  std::int64_t can_served_us_ = 0;
+  std::int64_t ask_us_ = 0;  ///< When search and source are asked for a sign of life.
   std::atomic<bool> is_over_{false};
   std::atomic<std::uint32_t> turns_{0};
   std::thread thread_;

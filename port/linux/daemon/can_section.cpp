@@ -10,6 +10,16 @@ constexpr Range kNodes{1, can::kNodeMax};
 constexpr Range kTimes_ms{0, 65535};
 constexpr Range kBitRates_per_s{10'000, 1'000'000};
 constexpr Range kSerials{0, UINT32_MAX};
+constexpr Range kIds{0, 0x7ff};
+
+void read_fd(Section& section, can::Config& node) {
+  node.fd_frame = section.flag("fd_frame").value_or(node.fd_frame);
+  node.fd_bit_rate_switch = section.flag("fd_bit_rate_switch").value_or(node.fd_bit_rate_switch);
+  node.fd_frame_id = static_cast<std::uint16_t>(section.whole("fd_frame_id", kIds).value_or(0));
+  if (!can::is_fd_report_id(can::fd_report_id(node), node.node))
+    section.fail("fd_frame_id", "this identifier has another use in CANopen",
+                 "take one of 0x181 to 0x57F or 0x680 to 0x6DF that nobody on the bus sends");
+}
 
 }  // namespace
 
@@ -30,6 +40,7 @@ void read_can(Section section, Config& config) {
   node.heartbeat_ms = u16("heartbeat_ms", node.heartbeat_ms);
   node.master_silence_ms = u16("master_silence_ms", node.master_silence_ms);
   node.serial = static_cast<std::uint32_t>(section.whole("serial", kSerials).value_or(0));
+  read_fd(section, node);
   can.bit_rate_per_s =
       static_cast<std::uint32_t>(section.whole("bit_rate", kBitRates_per_s).value_or(0));
   if (node.master == node.node)

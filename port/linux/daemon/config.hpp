@@ -12,6 +12,7 @@
 #include "flatpose/job/rules.hpp"
 #include "flatpose/locate/locator.hpp"
 #include "flatpose/result_map/registers.hpp"
+#include "port/linux/can/interface.hpp"
 #include "port/linux/daemon/pick_pose.hpp"
 #include "port/linux/files/scan.hpp"
 #include "port/linux/modbus/allow_list.hpp"
@@ -52,6 +53,8 @@ struct CanConfig {
   std::string interface = "can0";
   std::uint32_t bit_rate_per_s = 0;  ///< That the interface must have; 0: whatever it has.
   can::Config node;
+
+  [[nodiscard]] port::CanNeed need() const noexcept { return {bit_rate_per_s, node.fd_frame}; }
 };
 
 /// [source]: where scans come from.
@@ -90,8 +93,8 @@ struct JobConfig {
   std::vector<int> parts;       ///< Indices into Config::parts, searched in the same scan.
   locate::LocateConfig locate;  ///< Its deadline is the job's; exclusions are the next.
   std::vector<Region> exclusions;
-  std::string work_file;        ///< Of frame "work"; with others it says where up is.
-  std::string robot_file;       ///< Of frame "robot".
+  std::string work_file;   ///< Of frame "work"; with others it says where up is.
+  std::string robot_file;  ///< Of frame "robot".
   ReportRule report;
   double verify_shift_mm = 1.0;       ///< What the work plane may have moved when it is verified.
   double verify_tilt_rad = 0.008727;  ///< Half a degree.

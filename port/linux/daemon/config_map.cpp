@@ -11,6 +11,7 @@ tool::ServedMap read_served_map(const std::string& config_path) {
   served.format = config.modbus.format;
   served.handshake = config.modbus.handshake;
   served.node = config.can.node.node;
+  served.fd_frame_id = config.can.node.fd_frame_id;
   for (const JobConfig& job : config.jobs) {
     tool::ServedJob shown{job.rule.job, {}, job.rule.frame, job.rule.convention};
     for (const int part : job.parts)

@@ -25,7 +25,7 @@ constexpr Format kFormats[] = {
     {"st", [](const ServedMap& s) { return map_function_block(PlcDialect::kCodesys, s); }},
     {"scl", [](const ServedMap& s) { return map_function_block(PlcDialect::kScl, s); }},
     {"eds", [](const ServedMap&) { return map_eds(); }},
-    {"dbc", [](const ServedMap& s) { return map_dbc(s.node); }},
+    {"dbc", [](const ServedMap& s) { return map_dbc(s.node, s.fd_frame_id); }},
 };
 
 const Format& format_named(const std::string& name) {

@@ -1,7 +1,11 @@
 // The node's frames as a DBC file.
 
+#include <cmath>
+
 #include "flatpose/can/dictionary.hpp"
+#include "flatpose/can/fd_report.hpp"
 #include "flatpose/can/report.hpp"
+#include "flatpose/result_map/table.hpp"
 #include "port/linux/tool/map_can.hpp"
 #include "port/linux/tool/map_names.hpp"
 #include "port/linux/tool/number_text.hpp"
@@ -15,10 +19,18 @@ using result_map::ValueSet;
 constexpr const char* kTpdoNames[can::kTpdoCount] = {"FLATPOSE_STATUS", "FLATPOSE_POSE_1",
                                                      "FLATPOSE_POSE_2", "FLATPOSE_POSE_3"};
 
+/// How tools are told which frames are FD: the 15th of these is.
+constexpr const char* kFrameFormats =
+    "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"J1939PG\","
+    "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\","
+    "\"reserved\",\"reserved\",\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\n"
+    "BA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\n";
+
 /// What the file is made of: frames first, then what is said about them.
 struct Dbc {
   std::string frames;
   std::string comments;
+  std::string attributes;
   std::string values;
   unsigned id = 0;
   int bit = 0;
@@ -54,22 +66,57 @@ void add_bits(Dbc& dbc) {
     dbc.signal("bit_" + named.name, 1, false, 1, 0, 1, "", named.doc, ValueSet::kNone);
 }
 
+void add_head(ReportField field, const std::string& name, Dbc& dbc) {
+  const can::ReportLine& line = can::line_of(field);
+  if (field == ReportField::kBits) return add_bits(dbc);
+  dbc.signal(name, 8 * line.bytes, line.is_signed, line.scale, line.least, line.greatest, line.unit,
+             line.doc, line.values);
+}
+
 void add_tpdo(int tpdo, unsigned node, Dbc& dbc) {
   dbc.frame(can::kTpdoBase + can::kTpdoStep * static_cast<unsigned>(tpdo) + node, kTpdoNames[tpdo],
             8, "FLATPOSE",
             tpdo == 0 ? "Take a pose when this and the three pose frames have one sequence, and "
                         "done_number is yours"
                       : "Belongs to the status frame with the same sequence");
-  for (const ReportField field : can::fields_of_tpdo(tpdo)) {
-    const can::ReportLine& line = can::line_of(field);
-    if (field == ReportField::kBits) {
-      add_bits(dbc);
-      continue;
-    }
-    dbc.signal(field == ReportField::kSequence ? formatted("sequence_%d", tpdo) : line.name,
-               8 * line.bytes, line.is_signed, line.scale, line.least, line.greatest, line.unit,
-               line.doc, line.values);
-  }
+  for (const ReportField field : can::fields_of_tpdo(tpdo))
+    add_head(
+        field,
+        field == ReportField::kSequence ? formatted("sequence_%d", tpdo) : can::line_of(field).name,
+        dbc);
+}
+
+/// What stands for "there is none".
+std::string none_of(const result_map::Entry& entry, int bytes) {
+  if (!entry.may_be_none) return {};
+  if (bytes == 1) return "255: none";
+  if (entry.type == result_map::Type::kInt16) return "-32768: none";
+  if (entry.type == result_map::Type::kUint16) return "65535: none";
+  return entry.type == result_map::Type::kInt32 ? "-2147483648: none" : "4294967295: none";
+}
+
+// A register in as many bytes as it has there.
+void add_register(const can::FdLine& line, Dbc& dbc) {
+  using result_map::Type;
+  const result_map::Entry& entry = *result_map::find(line.field);
+  const bool is_signed = entry.type == Type::kInt16 || entry.type == Type::kInt32;
+  const int bits = 8 * line.bytes;
+  const double most = std::ldexp(1.0, is_signed ? bits - 1 : bits) - 1;
+  const double spared = !is_signed && (entry.may_be_none || bits == 8) ? 1 : 0;
+  std::string doc = entry.doc;
+  if (const std::string none = none_of(entry, line.bytes); !none.empty())
+    doc += (doc.empty() ? "" : "; ") + none;
+  dbc.signal(entry.name, bits, is_signed, entry.scale, is_signed ? -most * entry.scale : 0,
+             (most - spared) * entry.scale, entry.unit, doc, entry.values);
+}
+
+void add_fd(unsigned id, Dbc& dbc) {
+  dbc.frame(id, "FLATPOSE_RESULT", int{can::kFdBytesMax}, "FLATPOSE",
+            "The whole result in one CAN FD frame: off unless fd_frame = true, or by 2006h:1");
+  for (const ReportField field : can::fields_of_tpdo(0))
+    add_head(field, can::line_of(field).name, dbc);
+  for (const can::FdLine& line : can::fd_lines()) add_register(line, dbc);
+  dbc.attributes += formatted("BA_ \"VFrameFormat\" BO_ %u 14;\n", id);
 }
 
 void add_others(unsigned node, Dbc& dbc) {
@@ -99,17 +146,18 @@ void add_others(unsigned node, Dbc& dbc) {
 
 }  // namespace
 
-std::string map_dbc(int node) {
+std::string map_dbc(int node, int fd_frame_id) {
   Dbc dbc;
   const auto id = static_cast<unsigned>(node);
   add_others(id, dbc);
   for (int tpdo = 0; tpdo < can::kTpdoCount; ++tpdo) add_tpdo(tpdo, id, dbc);
+  add_fd(fd_frame_id != 0 ? static_cast<unsigned>(fd_frame_id) : can::kFdReportBase + id, dbc);
   return "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: FLATPOSE MASTER\n" + dbc.frames + "\n" +
          formatted(
              "CM_ \"Made by flatpose map --format dbc, for node %d. Rotations: 0.001 degree; "
              "of a rotation vector 1e-6 rad.\";\n",
              node) +
-         dbc.comments + "\n" + dbc.values;
+         dbc.comments + "\n" + kFrameFormats + dbc.attributes + "\n" + dbc.values;
 }
 
 }  // namespace flatpose::tool

@@ -27,6 +27,7 @@ struct ServedMap {
   result_map::WireFormat format;
   job::Handshake handshake = job::Handshake::kNumber;
   int node = can::Config{}.node;
+  int fd_frame_id = 0;  ///< 0: the usual.
   std::vector<ServedJob> jobs;
 };
 

@@ -17,16 +17,21 @@ class CanBus::End final : public can::Link {
   }
   bool send(const can::Frame& frame) noexcept override {
     if (is_off() || sent_in_step_ >= bus_.faults_.room) return false;
+    if (frame.is_fd && !bus_.carries_fd_) return true;
     ++sent_in_step_;
     return bus_.take(index_, frame);
   }
 
   [[nodiscard]] bool is_off() const noexcept { return state_ == can::BusState::kOff; }
-  void put(const can::Frame& frame) { inbox_.push_back({Received::Kind::kFrame, frame, {}}); }
+  void put(const can::Frame& frame) {
+    inbox_.push_back({Received::Kind::kFrame, frame, {}, bus_.now_us_});
+  }
   void set(can::BusState state) {
     state_ = state;
-    inbox_.push_back({Received::Kind::kBus, {}, {.state = state}});
+    const can::BusEvent event{.state = state, .carries_fd = bus_.carries_fd_};
+    inbox_.push_back({Received::Kind::kBus, {}, event, bus_.now_us_});
   }
+  [[nodiscard]] can::BusState state() const noexcept { return state_; }
   void step() { sent_in_step_ = 0; }
 
  private:
@@ -59,7 +64,8 @@ bool CanBus::take(int from, const can::Frame& frame) {
   return true;
 }
 
-void CanBus::step() {
+void CanBus::step(std::int64_t now_us) {
+  now_us_ = now_us;
   std::deque<Flying> still;
   for (Flying& flying : flying_) {
     if (ends_[static_cast<std::size_t>(flying.from)]->is_off()) continue;
@@ -72,6 +78,11 @@ void CanBus::step() {
   }
   flying_ = std::move(still);
   for (const auto& end : ends_) end->step();
+}
+
+void CanBus::set_fd(bool carries_fd) {
+  carries_fd_ = carries_fd;
+  for (const auto& end : ends_) end->set(end->state());
 }
 
 void CanBus::set_state(int end, can::BusState state) {

@@ -30,11 +30,13 @@ class CanBus {
   /// A node's end, for as long as the bus lives.
   can::Link& attach();
 
-  /// Time goes on: what was sent arrives.
-  void step();
+  /// Time goes on: what was sent arrives now.
+  void step(std::int64_t now_us);
 
   /// The controller of the n-th end. Off: it neither sends nor gets, and what it had sent is lost.
   void set_state(int end, can::BusState state);
+  /// Whether it is an FD bus; on a classic one FD frames are lost. All ends are told.
+  void set_fd(bool carries_fd);
 
   void set_faults(const CanFaults& faults) { faults_ = faults; }
   [[nodiscard]] int sent_count() const noexcept { return sent_count_; }
@@ -55,6 +57,8 @@ class CanBus {
   std::vector<std::shared_ptr<End>> ends_;
   std::deque<Flying> flying_;
   int sent_count_ = 0;
+  std::int64_t now_us_ = 0;
+  bool carries_fd_ = false;
 };
 
 }  // namespace flatpose::sim

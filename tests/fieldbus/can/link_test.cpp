@@ -19,13 +19,15 @@ constexpr std::int64_t kMs = 1000;
 // The search: every order takes a few steps; its pose tells the number.
 class World {
  public:
-  explicit World(std::uint64_t seed, const sim::CanFaults& faults = {})
+  explicit World(std::uint64_t seed, const sim::CanFaults& faults = {}, bool has_fd = false)
       : bus(seed, faults),
         plc(bus.attach()),
         device(desk.machine),
         station(device, bus.attach()),
         random(seed, 99) {
-    EXPECT_EQ(device.init({.master_silence_ms = 0}, desk.now_us), Status::kOk);
+    const Config config{.fd_frame = has_fd, .carries_fd = has_fd};
+    EXPECT_EQ(device.init(config, desk.now_us), Status::kOk);
+    bus.set_fd(has_fd);
   }
 
   void step() {
@@ -40,7 +42,7 @@ class World {
       desk.tell(job::SearchEvent::Kind::kFinished, order.ticket, result);
       order = {};
     }
-    bus.step();
+    bus.step(desk.now_us);
     const job::Outputs out = station.serve(desk.now_us);
     EXPECT_GT(station.next_us(), desk.now_us - 1);
     if (out.order.kind == job::Order::Kind::kNone) return;
@@ -95,6 +97,9 @@ class Plc {
     send(kSdoRequestBase + kNode, Node::object(head, index, subindex, value));
     for (int i = 0; i < 10; ++i) world_.step();
   }
+  bool looks_at_fd_alone = false;
+  int whole_count = 0;
+
   int emergencies(std::uint16_t code) const {
     const auto found = emergencies_.find(code);
     return found == emergencies_.end() ? 0 : found->second;
@@ -110,8 +115,26 @@ class Plc {
       for (int i = 0; i < kTpdoCount; ++i) {
         if (got.frame.id == tpdo_id(i, kNode)) frames_[i] = got.frame;
       }
-      judge(number, answer);
+      if (got.frame.is_fd) {
+        judge_whole(number, got.frame, answer);
+      } else if (!looks_at_fd_alone) {
+        judge(number, answer);
+      }
     }
+  }
+  void judge_whole(std::uint16_t number, const Frame& whole, Answer& answer) {
+    ++whole_count;
+    if (number_at(whole.data, 4, 2) == number && whole.data[3] != 0)
+      answer.has_come = answer.was_refused = true;
+    if (!looks_at_fd_alone || number_at(whole.data, 6, 2) != number) return;
+    answer.has_come = true;
+    answer.report[ReportField::kStatus] = static_cast<std::int8_t>(whole.data[1]);
+    const auto raw = [&whole](std::size_t at) {
+      return static_cast<std::int32_t>(number_at(whole.data, at, 4));
+    };
+    answer.report[ReportField::kPositionX] = raw(8);
+    answer.report[ReportField::kPositionY] = raw(12);
+    answer.report[ReportField::kPositionZ] = raw(16);
   }
   void judge(std::uint16_t number, Answer& answer) {
     const auto& status = frames_[0].data;
@@ -176,6 +199,48 @@ TEST(CanLink, LossDoublingAndDelayLoseNoCommandAndRunNoneTwice) {
     for (int number = 1; number <= 300; ++number)
       expect_pose_of(number, plc.ask(static_cast<std::uint16_t>(number)));
     for (int number = 1; number <= 300; ++number) EXPECT_EQ(world.executed[number], 1) << number;
+  }
+}
+
+TEST(CanLink, TheWholeResultAloneIsEnoughOnABusThatLosesDoublesAndDelays) {
+  const sim::CanFaults kinds[] = {
+      {}, {.lost = 0.2}, {.doubled = 0.5}, {.lost = 0.1, .doubled = 0.2, .late = 0.3, .room = 1}};
+  std::uint64_t seed = 20;
+  for (const sim::CanFaults& faults : kinds) {
+    World world(++seed, {}, true);
+    Plc plc(world);
+    plc.looks_at_fd_alone = true;
+    plc.set(kFdReportIndex, 5, 20, 2);
+    world.bus.set_faults(faults);
+    for (int number = 1; number <= 200; ++number)
+      expect_pose_of(number, plc.ask(static_cast<std::uint16_t>(number)));
+    for (int number = 1; number <= 200; ++number) EXPECT_EQ(world.executed[number], 1) << number;
+  }
+}
+
+TEST(CanLink, WithoutFdThereIsNoFdFrameEver) {
+  World world(5);
+  Plc plc(world);
+  for (int number = 1; number <= 50; ++number)
+    expect_pose_of(number, plc.ask(static_cast<std::uint16_t>(number)));
+  EXPECT_EQ(plc.whole_count, 0);
+}
+
+TEST(CanLink, BusOffAndAClassicInterfaceAfterwardsLeaveTheWholeResultOutAndAllElseGoesOn) {
+  World world(6, {}, true);
+  Plc plc(world);
+  expect_pose_of(1, plc.ask(1));
+  EXPECT_GT(plc.whole_count, 0);
+  for (const bool has_fd : {false, true, false, true}) {
+    world.bus.set_state(1, BusState::kOff);
+    for (int i = 0; i < 20; ++i) world.step();
+    world.bus.set_state(1, BusState::kActive);
+    world.bus.set_fd(has_fd);
+    for (int i = 0; i < 20; ++i) world.step();
+    plc.whole_count = 0;
+    const auto number = static_cast<std::uint16_t>(world.executed.size() + 1);
+    expect_pose_of(number, plc.ask(number));
+    EXPECT_EQ(plc.whole_count > 0, has_fd);
   }
 }
 

@@ -79,7 +79,8 @@ class Node {
   /// The answer to one SDO request; empty: none came.
   Bytes sdo(const Bytes& request) {
     for (const Frame& frame : take(kSdoRequestBase + kNode, request)) {
-      if (frame.id == kSdoAnswerBase + kNode) return {frame.data.begin(), frame.data.end()};
+      if (frame.id == kSdoAnswerBase + kNode)
+        return {frame.data.begin(), frame.data.begin() + frame.size};
     }
     return {};
   }
@@ -176,6 +177,8 @@ class Node {
     }
     return 0;
   }
+  /// The last whole result.
+  [[nodiscard]] Frame whole() const { return last(kFdReportBase + kNode); }
   [[nodiscard]] bool sequences_agree() const {
     for (int i = 1; i < kTpdoCount; ++i) {
       if (tpdo(i).data[0] != tpdo(0).data[0]) return false;

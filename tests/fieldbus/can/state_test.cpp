@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -78,6 +79,16 @@ std::vector<State> states() {
   return all;
 }
 
+void expect_untouched(Node& node, const State& state, const job::Snapshot& before,
+                      std::uint8_t errors) {
+  EXPECT_EQ(node.device.state(), state.network) << state.name;
+  EXPECT_EQ(node.device.error_register(), errors);
+  const job::Snapshot after = node.desk.see(kMaster);
+  EXPECT_EQ(after.done_number, before.done_number);
+  EXPECT_EQ(after.bits, before.bits);
+  EXPECT_EQ(after.image, before.image);
+}
+
 bool is_ours(std::uint32_t id) {
   return id == kNmtId || id == kSyncId || id == kRpdoBase + kNode ||
          id == kSdoRequestBase + kNode || (id > kHeartbeatBase && id <= kHeartbeatBase + kNodeMax);
@@ -106,12 +117,65 @@ TEST(CanStates, FramesOfEveryIdAndLengthThatAreNotOursDoNothing) {
       EXPECT_TRUE(node.take(remote).empty()) << state.name << ", " << id;
       EXPECT_TRUE(node.take(extended).empty()) << state.name << ", " << id;
     }
-    EXPECT_EQ(node.device.state(), state.network) << state.name;
-    EXPECT_EQ(node.device.error_register(), errors);
-    const job::Snapshot after = node.desk.see(kMaster);
-    EXPECT_EQ(after.done_number, before.done_number);
-    EXPECT_EQ(after.bits, before.bits);
-    EXPECT_EQ(after.image, before.image);
+    expect_untouched(node, state, before, errors);
+  }
+}
+
+// Also those that would be ours: a command, a request, a reset.
+TEST(CanStates, FdFramesOfEveryIdAndLengthDoNothing) {
+  constexpr std::size_t kSizes[] = {0, 1, 2, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  for (const bool has_fd : {false, true}) {
+    for (const State& state : states()) {
+      Node node({.fd_frame = has_fd, .carries_fd = has_fd});
+      state.prepare(node);
+      const job::Snapshot before = node.desk.see(kMaster);
+      const std::uint8_t errors = node.device.error_register();
+      for (std::uint32_t id = 0; id < 0x800; ++id) {
+        if (!is_ours(id) && id % 7 != 0) continue;
+        for (const std::size_t size : kSizes) {
+          if (!is_ours(id) && size != kSizes[id % std::size(kSizes)]) continue;
+          Bytes bytes(size, 1);
+          if (size == 2) bytes[0] = 129;
+          if (id == kSdoRequestBase + kNode && size > 0) bytes[0] = 0x40;
+          Frame frame = frame_of(id, bytes);
+          frame.is_fd = true;
+          frame.has_bit_rate_switch = size % 3 == 0;
+          EXPECT_TRUE(node.take(frame).empty()) << state.name << ", " << id << ", " << size;
+        }
+      }
+      expect_untouched(node, state, before, errors);
+    }
+  }
+}
+
+TEST(CanStates, AClassicFrameLongerThanThereAreDoesNothing) {
+  Node node;
+  for (const std::uint32_t id : {kRpdoBase + kNode, kSdoRequestBase + kNode, kNmtId})
+    EXPECT_TRUE(node.take(id, Bytes(9, 1)).empty());
+  EXPECT_EQ(node.device.error_register(), 0);
+}
+
+// Whatever the state, the whole result begins as TPDO1 and has a pose where that has one.
+TEST(CanStates, TheFdFrameIsOfOperationalAloneAndSaysWhatTheTpdosSay) {
+  for (const State& state : states()) {
+    Node node({.fd_frame = true, .carries_fd = true});
+    state.prepare(node);
+    node.pass(20'000);
+    const Frame whole = node.whole();
+    if (state.network != NetworkState::kOperational) {
+      EXPECT_EQ(whole.size, 0) << state.name;
+      continue;
+    }
+    ASSERT_EQ(whole.size, 64) << state.name;
+    const Frame status = node.tpdo(0);
+    EXPECT_TRUE(std::equal(status.data.begin(), status.data.begin() + 8, whole.data.begin()))
+        << state.name;
+    const bool has_pose = number_at(whole.data, 8, 4) != 0x80000000;
+    EXPECT_EQ(has_pose, state.name.rfind("done", 0) == 0) << state.name;
+    EXPECT_EQ(has_pose, (whole.data[2] & job::kValid) != 0);
+    if (has_pose) {
+      EXPECT_EQ(number_at(whole.data, 8, 4), 10'000U);
+    }
   }
 }
 

@@ -26,6 +26,11 @@ PATIENCE_S = 20
 EMPTY_SCENE = -2
 ERROR_FLAG = 0x20000000
 BUS_OFF, RESTARTED = ERROR_FLAG | 0x40, ERROR_FLAG | 0x100
+FD_ON, FD_OFF = 0x40000500 + NODE, 0xC0000500 + NODE
+WHOLE = struct.Struct("<BbBBHH3i4i6HhhI4BHBB")
+WHOLE_NAMES = ("sequence", "status", "bits", "refused", "judged", "done", "x", "y", "z", "r1", "r2", "r3", "r4", "sigma_x",
+               "sigma_y", "sigma_z", "turn_x", "turn_y", "turn_z", "score", "visible", "age_ms", "part", "tool", "pick",
+               "match_index", "session", "convention", "frame")
 
 
 def run(*command):
@@ -42,18 +47,23 @@ def small_scan():
     return path
 
 
+def write_config(modbus=False, can_lines="", scan=EXAMPLE / "scan.pcd"):
+    text = (SOURCE_DIR / "port/linux/examples/flatposed.toml").read_text(encoding="utf-8")
+    text = text.replace("../../../build/example", str(EXAMPLE)).replace(str(EXAMPLE / "scan.pcd"), str(scan))
+    for old, new in (("[source]", f'[can]\ninterface = "vcan0"\n{can_lines}\n[source]'), ("1536 ", "400 "),
+                     ("1280\n", "340\n"), ("4_000_000", "400_000")):
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    if not modbus:
+        text = re.sub(r"\[modbus\].*?(?=\n# \[can\])", "", text, flags=re.S)
+    config = pathlib.Path("/run/flatposed.toml")
+    config.write_text(text, encoding="utf-8")
+    return config
+
+
 class Daemon:
-    def __init__(self, modbus=False, can_lines="", scan=EXAMPLE / "scan.pcd"):
-        text = (SOURCE_DIR / "port/linux/examples/flatposed.toml").read_text(encoding="utf-8")
-        text = text.replace("../../../build/example", str(EXAMPLE)).replace(str(EXAMPLE / "scan.pcd"), str(scan))
-        for old, new in (("[source]", f'[can]\ninterface = "vcan0"\n{can_lines}\n[source]'), ("1536 ", "400 "),
-                         ("1280\n", "340\n"), ("4_000_000", "400_000")):
-            assert old in text, old
-            text = text.replace(old, new, 1)
-        if not modbus:
-            text = re.sub(r"\[modbus\].*?(?=\n# \[can\])", "", text, flags=re.S)
-        config = pathlib.Path("/run/flatposed.toml")
-        config.write_text(text, encoding="utf-8")
+    def __init__(self, *settings):
+        config = write_config(*settings)
         self.process = subprocess.Popen([FLATPOSED, "--config", str(config)], stderr=subprocess.PIPE, text=True)
         self.log = ""
         while "ready: " not in self.log:
@@ -71,9 +81,12 @@ class Master:
     """A CANopen master, as small as will do."""
 
     def __init__(self):
-        self.bus = can.Bus("vcan0", bustype="socketcan")
+        self.bus = can.Bus("vcan0", bustype="socketcan", fd=True)
         self.status = {}
         self.pose = {}
+        self.whole = {}
+        self.whole_data = b""
+        self.order = []
         self.states = []
         self.emergencies = []
         self.status_count = 0
@@ -92,6 +105,12 @@ class Master:
             return
         data = bytes(message.data)
         base = message.arbitration_id - NODE
+        self.order = self.order[-99:] + [(message.arbitration_id, message.is_fd)]
+        if message.is_fd:
+            assert base == 0x500 and len(data) == 64, message
+            self.whole, self.whole_data = dict(zip(WHOLE_NAMES, WHOLE.unpack(data))), data
+            self.whole["switches"] = message.bitrate_switch
+            return
         if len(data) != (1 if base == 0x700 else 8):
             return
         if base == 0x180:
@@ -288,6 +307,16 @@ class Pose(Guest):
         self.assertEqual((values["done_number"], values["bit_valid"], values["bit_simulated"]), (1, 1, 1))
         self.assertGreater(values["score"], 0.8)
 
+    def test_is_never_told_in_an_fd_frame_unless_that_is_asked_for(self):
+        master = self.master
+        master.start()
+        for number in range(1, 6):
+            self.assertEqual(master.trigger(number)["status"], 0)
+        master.wait_for(lambda: False, 0.3)
+        self.assertGreater(len(master.order), 20)
+        self.assertFalse(any(is_fd for _, is_fd in master.order))
+        self.assertEqual(master.number(0x2006, 1), FD_OFF)
+
     def test_is_asked_for_by_the_whole_command_too(self):
         master = self.master
         master.start()
@@ -298,8 +327,125 @@ class Pose(Guest):
         self.assertEqual(master.trigger(501, session=session % 65535 + 1)["refused"], 6, "a stale session")
 
 
+class Fd(Guest):
+    """The whole result in one frame."""
+    can_lines = "heartbeat_ms = 100\nfd_frame = true"
+
+    def whole_of(self, number):
+        master = self.master
+        self.assertTrue(master.wait_for(lambda: master.whole.get("done") == number), master.whole)
+        return master.whole
+
+    def test_is_the_pose_of_flatpose_locate_and_all_else_of_it(self):
+        master = self.master
+        master.start()
+        master.command(1)
+        whole = self.whole_of(1)
+        self.assertEqual((whole["status"], whole["refused"], whole["judged"], whole["bits"] & 16), (0, 0, 1, 16))
+        self.assert_pose([whole[name] for name in ("x", "y", "z", "r1", "r2", "r3")])
+        match = json.loads((EXAMPLE / "located.json").read_text())["matches"][0]
+        for name, wanted in (("score", match["score"]), ("visible", match["visible"]),
+                             *zip(("sigma_x", "sigma_y", "sigma_z"), match["sigma_mm"]),
+                             *zip(("turn_x", "turn_y", "turn_z"), match["sigma_deg"])):
+            got = whole[name]
+            self.assertTrue(got == 65535 if wanted is None else abs(got - 1e4 * wanted) <= 0.5001, (name, got, wanted))
+        self.assertEqual([whole[name] for name in ("r4", "part", "tool", "pick", "match_index", "convention", "frame")],
+                         [0, 1, 0, 0, 1, 0, 0])
+        self.assertEqual(whole["session"], master.number(0x2010, 11))
+        self.assertLess(whole["age_ms"], 10_000)
+        self.assertTrue(whole["switches"])
+        self.assertTrue(master.wait_for(lambda: master.status["done"] == 1))
+        self.assertEqual(master.status["sequence"], whole["sequence"])
+        ids = [cob_id for cob_id, _ in master.order]
+        self.assertLess(ids.index(0x50A), ids.index(0x18A), "it comes first")
+
+    def test_is_what_canmatrix_reads_by_the_dbc(self):
+        (matrix,) = canmatrix.formats.loadp(str(SOURCE_DIR / "docs/can/flatpose.dbc")).values()
+        frame = matrix.frame_by_id(canmatrix.ArbitrationId(0x50A, extended=False))
+        self.assertTrue(frame.is_fd)
+        self.master.start()
+        self.master.command(1)
+        self.whole_of(1)
+        values = {name: float(signal.phys_value) for name, signal in frame.decode(self.master.whole_data).items()}
+        names = ("position_x", "position_y", "position_z", "rotation_1", "rotation_2", "rotation_3")
+        self.assert_pose([round(1000 * values[name]) for name in names])
+        self.assertEqual((values["done_number"], values["bit_valid"], values["match_index"]), (1, 1, 1))
+
+    def test_fd_frames_of_every_length_leave_it_standing(self):
+        master = self.master
+        master.start()
+        for size in (*range(9), 12, 16, 20, 24, 32, 48, 64):
+            for cob_id in (0, 0x80, 0x200 + NODE, 0x500 + NODE, 0x600 + NODE, 0x700 + MASTER, 0x123, 0x7FF):
+                for switches in (False, True):
+                    data = bytes([130, NODE] + 62 * [1])[:size]
+                    message = can.Message(arbitration_id=cob_id, data=data, is_extended_id=False, is_fd=True,
+                                          bitrate_switch=switches)
+                    master.bus.send(message)
+        master.states.clear()
+        self.assertTrue(master.wait_for(lambda: master.states))
+        self.assertEqual(master.states, [5], "no reset was taken")
+        self.assertEqual(master.emergencies, [])
+        master.command(7)
+        self.assertEqual(self.whole_of(7)["status"], 0)
+
+    def test_is_turned_off_and_on_by_sdo(self):
+        master = self.master
+        master.start()
+        self.assertEqual(master.number(0x2006, 1), FD_ON)
+        self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_OFF)), 0)
+        master.order.clear()
+        self.assertEqual(master.trigger(1)["status"], 0)
+        self.assertFalse(any(is_fd for _, is_fd in master.order))
+        self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_ON)), 0)
+        self.assertEqual(self.whole_of(1)["status"], 0)
+
+    def test_is_nothing_on_an_interface_that_has_become_classic(self):
+        master = self.master
+        master.start()
+        run("ip", "link", "set", "vcan0", "down")
+        run("ip", "link", "set", "vcan0", "mtu", "16")
+        self.addCleanup(run, "sh", "-c", "ip link set vcan0 down; ip link set vcan0 mtu 72; ip link set vcan0 up")
+        run("ip", "link", "set", "vcan0", "up")
+        master.close()
+        master.__init__()
+        self.assertTrue(master.wait_for(lambda: master.states))
+        master.start()
+        self.assertEqual(master.trigger(3)["status"], 0)
+        self.assert_pose(master.whole_pose())
+        self.assertEqual(master.whole, {})
+        self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_OFF)), 0)
+        self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_ON)), 0x08000022)
+        refused = subprocess.run([FLATPOSED, "--config", str(write_config(False, self.can_lines))], text=True,
+                                 capture_output=True, timeout=PATIENCE_S, check=False)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("vcan0 is classic", refused.stderr)
+        self.assertIn("ip link set vcan0 mtu 72", refused.stderr)
+
+
 class Triggers(Guest):
     scan = small_scan()
+
+    def kernel_times_us(self, count):
+        """From a command's arrival to the frame that says it is accepted, both by the kernel's stamps."""
+        times = []
+        with can.Bus("vcan0", bustype="socketcan", receive_own_messages=True) as bus:
+            for number in range(2001, 2001 + count):
+                bus.send(can.Message(arbitration_id=0x200 + NODE, data=struct.pack("<HHBBH", number, 0, 1, 0, 1),
+                                     is_extended_id=False))
+                arrived, done = None, False
+                while not done:
+                    message = bus.recv(PATIENCE_S)
+                    self.assertIsNotNone(message)
+                    if message.arbitration_id == 0x200 + NODE:
+                        arrived = message.timestamp
+                    if message.arbitration_id == 0x180 + NODE:
+                        status = struct.unpack("<BbBBHH", message.data)
+                        if status[4] == number and arrived:
+                            times.append(1e6 * (message.timestamp - arrived))
+                            arrived = None
+                        done = status[5] == number
+        self.assertEqual(len(times), count)
+        return times
 
     def test_a_thousand_are_answered_once(self):
         master = self.master
@@ -323,7 +469,9 @@ class Triggers(Guest):
             begin = time.monotonic()
             master.read(0x1000, 0)
             sdo_us.append(1e6 * (time.monotonic() - begin))
-        for name, times in (("command to TPDO1 that it was accepted", accepted_us),
+        arrived_us = self.kernel_times_us(500)
+        for name, times in (("command's arrival in the kernel to TPDO1 there", arrived_us),
+                            ("command to TPDO1 that it was accepted", accepted_us),
                             ("command to the answer, of an empty scene", done_us), ("SDO, expedited", sdo_us)):
             times.sort()
             print(f"{name}: median {statistics.median(times):.0f} us, p90 {times[len(times) * 9 // 10]:.0f}")
@@ -443,6 +591,34 @@ class Link(Guest):
         master.states.clear()
         self.inject(RESTARTED)
         self.works_again(5)
+
+    def stall(self, stop_s, beats):
+        """The daemon stands still while heartbeats come, or do not; what it makes of that."""
+        master = self.master
+        self.assertEqual(master.write(0x1016, 1, struct.pack("<I", MASTER << 16 | 300)), 0)
+        master.start()
+        master.send(0x700 + MASTER, b"\x05")
+        self.assertEqual(master.number(0x1001, 0), 0)
+        self.daemon.process.send_signal(signal.SIGSTOP)
+        end = time.monotonic() + stop_s
+        while time.monotonic() < end:
+            if beats:
+                master.send(0x700 + MASTER, b"\x05")
+            time.sleep(0.05)
+        if beats:
+            master.send(0x700 + MASTER, b"\x05")
+        self.daemon.process.send_signal(signal.SIGCONT)
+        master.emergencies.clear()
+        master.wait_for(lambda: master.emergencies, 0.2)
+        return master.emergencies
+
+    def test_heartbeats_that_came_while_it_stood_still_came_in_time(self):
+        """By the kernel's stamps; on a virtual interface those of software, for it has no others."""
+        self.assertEqual(self.stall(1.5, beats=True), [])
+        self.assertEqual(self.master.states[-1], 5, "operational")
+
+    def test_heartbeats_that_did_not_come_while_it_stood_still_are_lost(self):
+        self.assertEqual(self.stall(1.5, beats=False), [0x8130])
 
     def test_an_interface_that_goes_down_is_back_when_it_is_up(self):
         master = self.master

@@ -20,7 +20,7 @@ mkdir /run/out; mount -t hostfs -o {folder} hostfs /run/out
 for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan net/sched/sch_tbf; do
   busybox insmod /usr/lib/uml/modules/$(uname -r)/kernel/$module.ko || echo "no module $module"
 done >/run/out/said 2>&1
-ip link set lo up; ip link add vcan0 type vcan; ip link set vcan0 up
+ip link set lo up; ip link add vcan0 type vcan; ip link set vcan0 mtu 72; ip link set vcan0 up
 cd /run
 /usr/bin/python3 -B {command} >>/run/out/said 2>&1
 echo $? >/run/out/code

@@ -69,6 +69,20 @@ TEST(Config, HasACanNodeWhenItsSectionIsThere) {
   EXPECT_EQ(given.can.node.master_silence_ms, 4);
   EXPECT_EQ(given.can.bit_rate_per_s, 125'000U);
   EXPECT_EQ(given.can.node.serial, 5U);
+  EXPECT_FALSE(usual.can.node.fd_frame);
+  EXPECT_TRUE(usual.can.node.fd_bit_rate_switch);
+  EXPECT_EQ(can::fd_report_id(usual.can.node), 0x50a);
+  const Config fd = parse_config(kPath,
+                                 "[can]\nnode = 3\nfd_frame = true\nfd_bit_rate_switch = false\n"
+                                 "fd_frame_id = 0x6a1\nbit_rate = 500_000\n");
+  EXPECT_TRUE(fd.can.node.fd_frame);
+  EXPECT_FALSE(fd.can.node.fd_bit_rate_switch);
+  EXPECT_EQ(can::fd_report_id(fd.can.node), 0x6a1);
+  EXPECT_TRUE(fd.can.need().fd);
+  EXPECT_EQ(fd.can.need().bit_rate_per_s, 500'000U);
+  expect_refused("[can]\nfd_frame_id = 0x18a\n", {"dir/f.toml:2: ", "0x680 to 0x6DF"});
+  expect_refused("[can]\nfd_frame_id = 0x701\n", {"dir/f.toml:2: "});
+  expect_refused("[can]\nfd_frame = 1\n", {"dir/f.toml:2: "});
   expect_refused("[can]\nnode = 128\n", {"dir/f.toml:2: ", "1 and 127"});
   expect_refused("[can]\nnode = 5\nmaster = 5\n", {"dir/f.toml:3: ", "the same"});
   expect_refused("[can]\nheartbeat_ms = 65536\n", {"dir/f.toml:2: "});

@@ -2,6 +2,7 @@
 # check_eds.py FLATPOSE. The checks are tried on broken copies too, so that they are known to find something.
 import configparser
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -105,6 +106,12 @@ class Eds(unittest.TestCase):
     def test_has_what_cia_306_asks_for(self):
         self.assertEqual(set(check(printed("eds"))), {0x1600, 0x1A00, 0x1A01, 0x1A02, 0x1A03})
 
+    def test_has_the_fd_frame_switched_off(self):
+        eds = read(printed("eds"))
+        self.assertEqual(eds["2006sub1"]["DefaultValue"], "$NODEID+0xC0000500")
+        for sub in "235":
+            self.assertEqual(dict(eds[f"2006sub{sub}"]), dict(eds[f"1800sub{sub}"]))
+
     def test_broken_copies_are_found_out(self):
         text = printed("eds")
         for old, new in (("SupportedObjects=3", "SupportedObjects=4"), ("\n[1018sub4]", "\n[1018sub5]"),
@@ -139,6 +146,32 @@ class Dbc(unittest.TestCase):
                     if len(parts) == 1:
                         self.assertTrue(parts[0].name.startswith(name), f"{name} is {parts[0].name}")
                     at += bits
+
+    def test_has_the_whole_result_as_an_fd_frame_and_no_other(self):
+        for node in (1, 10, 127):
+            matrix = self.frames(node)
+            frame = matrix.frame_by_id(canmatrix.ArbitrationId(0x500 + node, extended=False))
+            self.assertEqual((frame.name, frame.size, frame.is_fd), ("FLATPOSE_RESULT", 64, True))
+            self.assertEqual([f.name for f in matrix.frames if f.is_fd], ["FLATPOSE_RESULT"])
+            at = 0
+            for signal in sorted(frame.signals, key=lambda s: s.get_startbit(bit_numbering=1)):
+                self.assertEqual(signal.get_startbit(bit_numbering=1), at, signal.name)
+                at += signal.size
+            self.assertEqual(at, 512)
+
+    def test_of_the_whole_result_is_decoded_to_values(self):
+        frame = self.frames(10).frame_by_id(canmatrix.ArbitrationId(0x50A, extended=False))
+        data = struct.pack("<BbBBHH3i4i6HhhI4BHBB", 7, 1, 0x18, 0, 11, 11, -9000123, 2, 3, 400, 500, 600, -700,
+                           100, 200, 300, 400, 500, 65534, 9000, -5, 1234567, 1, 254, 2, 3, 0xBEEF, 3, 2)
+        values = frame.decode(data)
+        phys = {name: float(signal.phys_value) for name, signal in values.items()}
+        for name, value in (("position_x", -9000.123), ("rotation_4", -0.7), ("sigma_turn_z", 6.5534),
+                            ("score", 0.9), ("visible", -0.0005), ("age_ms", 1234567), ("tool", 254),
+                            ("match_index", 3), ("session_id", 0xBEEF), ("sequence", 7), ("done_number", 11)):
+            self.assertAlmostEqual(phys[name], value, msg=name)
+        self.assertEqual(str(values["convention"].named_value), "abb_quaternion")
+        self.assertEqual(str(values["frame"].named_value), "robot")
+        self.assertEqual([phys["bit_valid"], phys["bit_ready"]], [1, 0])
 
     def test_is_decoded_to_values(self):
         frame = self.frames(10).frame_by_id(canmatrix.ArbitrationId(0x28A, extended=False))

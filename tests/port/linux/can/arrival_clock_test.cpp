@@ -1,0 +1,82 @@
+// When a frame arrived, by stamps of a clock that anybody may set.
+
+#include "port/linux/can/arrival_clock.hpp"
+
+#include <gtest/gtest.h>
+
+namespace flatpose::port {
+namespace {
+
+constexpr std::int64_t kReal_us = 1'700'000'000'000'000;
+constexpr std::int64_t kSecond_us = 1'000'000;
+
+TEST(ArrivalClock, IsAsLongAgoAsTheStampIsOld) {
+  ArrivalClock clock;
+  clock.look(5'000'000, kReal_us);
+  for (const std::int64_t age_us : {0, 1, 999, 20'000, 3'000'000})
+    EXPECT_EQ(clock.arrived_us({kReal_us - age_us, 0}), 5'000'000 - age_us);
+}
+
+TEST(ArrivalClock, IsNowWithoutAStampAndNeverLaterNorVeryLongAgo) {
+  ArrivalClock clock;
+  clock.look(50'000'000, kReal_us);
+  EXPECT_EQ(clock.arrived_us({}), 50'000'000);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 700, 0}), 50'000'000);
+  EXPECT_EQ(clock.arrived_us({1, 0}), 40'000'000);
+}
+
+TEST(ArrivalClock, OfAClockThatWasSetSaysNowUntilTheQueueIsEmpty) {
+  for (const std::int64_t step_us :
+       {3'600 * kSecond_us, -3'600 * kSecond_us, 200'000L, -200'000L}) {
+    ArrivalClock clock;
+    std::int64_t now_us = 5'000'000, real_us = kReal_us;
+    clock.look(now_us, real_us);
+    const std::int64_t old_stamp_us = real_us + 10;
+    now_us += 400'000;
+    real_us += 400'000 + step_us;
+    clock.look(now_us, real_us);
+    EXPECT_EQ(clock.arrived_us({old_stamp_us, 0}), now_us) << step_us;
+    EXPECT_EQ(clock.arrived_us({real_us - 10, 0}), now_us) << "which of them it is nothing tells";
+    now_us += 100;
+    real_us += 100;
+    clock.look(now_us, real_us);
+    EXPECT_EQ(clock.arrived_us({old_stamp_us + 20, 0}), now_us) << "it waited as long";
+    clock.drained();
+    clock.look(now_us, real_us);
+    EXPECT_EQ(clock.arrived_us({real_us - 30, 0}), now_us - 30);
+  }
+}
+
+TEST(ArrivalClock, ThatWasSetWhileTheQueueWasFoundEmptyIsStillFoundOut) {
+  ArrivalClock clock;
+  clock.look(5'000'000, kReal_us);
+  clock.drained();
+  clock.look(5'000'100, kReal_us + 100 - 60 * kSecond_us);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 50, 0}), 5'000'100);
+}
+
+TEST(ArrivalClock, StandsAClockThatIsSlewed) {
+  ArrivalClock clock;
+  for (std::int64_t i = 0; i < 7'200; ++i) {  // an hour, 500 ppm, looked at twice a second
+    const std::int64_t now_us = i * 500'000;
+    const std::int64_t real_us = kReal_us + i * 500'250;
+    clock.look(now_us, real_us);
+    ASSERT_EQ(clock.arrived_us({real_us - 40, 0}), now_us - 40);
+  }
+}
+
+TEST(ArrivalClock, TakesTheControllersStampWhereThereIsOne) {
+  ArrivalClock clock;
+  for (std::int64_t i = 1; i <= 100; ++i) {
+    const std::int64_t arrived_us = i * 10'000;
+    const std::int64_t delay_us = i % 7 == 1 ? 30 : 30 + 100 * (i % 5);
+    const std::int64_t read_us = arrived_us + delay_us + 2'000;
+    clock.look(read_us, kReal_us + read_us);
+    const std::int64_t got_us =
+        clock.arrived_us({kReal_us + arrived_us + delay_us, 42 + arrived_us});
+    EXPECT_EQ(got_us, arrived_us + 30) << i;
+  }
+}
+
+}  // namespace
+}  // namespace flatpose::port

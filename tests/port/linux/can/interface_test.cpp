@@ -1,0 +1,78 @@
+// What is said of an interface that is not what the config asks for, and what mends it.
+
+#include "port/linux/can/interface.hpp"
+
+#include <gtest/gtest.h>
+
+#include "port/linux/files/input_error.hpp"
+
+namespace flatpose::port {
+namespace {
+
+constexpr CanInterface kReal{.index = 3, .is_up = true, .bit_rate_per_s = 250'000};
+constexpr CanInterface kVirtual{.index = 4, .is_up = true};
+
+CanInterface with_fd(CanInterface interface) {
+  interface.carries_fd = true;
+  return interface;
+}
+
+TEST(CanInterface, OfWhatTheConfigAsksForIsFine) {
+  EXPECT_FALSE(problem_of("can0", kReal, {}));
+  EXPECT_FALSE(problem_of("can0", kReal, {.bit_rate_per_s = 250'000}));
+  EXPECT_FALSE(problem_of("can0", with_fd(kReal), {.bit_rate_per_s = 250'000, .fd = true}));
+  EXPECT_FALSE(problem_of("vcan0", kVirtual, {.bit_rate_per_s = 500'000}))
+      << "a virtual one has no rate";
+  EXPECT_FALSE(problem_of("vcan0", with_fd(kVirtual), {.fd = true}));
+  EXPECT_NO_THROW(check_can("f.toml:3", "can0", kReal, {}));
+}
+
+TEST(CanInterface, ThatIsNotThereOrOfAnotherRateIsNamedWithItsRemedy) {
+  const auto none = problem_of("can7", {.has_kernel_can = false}, {});
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->what, "this kernel has no CAN");
+  EXPECT_EQ(none->remedy, "load its module: modprobe can_raw");
+  const auto absent = problem_of("can7", {}, {});
+  ASSERT_TRUE(absent);
+  EXPECT_EQ(absent->what, "there is no CAN interface can7");
+  const auto rate = problem_of("can0", kReal, {.bit_rate_per_s = 500'000});
+  ASSERT_TRUE(rate);
+  EXPECT_EQ(rate->what, "can0 runs at 250 kbit/s, not 500 kbit/s");
+  EXPECT_EQ(rate->remedy,
+            "ip link set can0 down; ip link set can0 up type can bitrate 500000 restart-ms 100");
+  EXPECT_THROW(check_can("f.toml:3", "can0", kReal, {.bit_rate_per_s = 500'000}), InputError);
+}
+
+TEST(CanInterface, ThatIsClassicIsRefusedForFdFramesWithTheCommandThatMakesItFd) {
+  const auto real = problem_of("can0", kReal, {.fd = true});
+  ASSERT_TRUE(real);
+  EXPECT_NE(real->what.find("can0 is classic"), std::string::npos);
+  EXPECT_EQ(real->remedy,
+            "ip link set can0 down; ip link set can0 up type can bitrate 250000 dbitrate 2000000 "
+            "fd on restart-ms 100");
+  const auto virtual_one = problem_of("vcan0", kVirtual, {.fd = true});
+  ASSERT_TRUE(virtual_one);
+  EXPECT_EQ(virtual_one->remedy,
+            "ip link set vcan0 down; ip link set vcan0 mtu 72; ip link set vcan0 up");
+}
+
+TEST(CanInterface, ThatIsDownIsBroughtUpByItsCommand) {
+  CanInterface down = kReal;
+  down.is_up = false;
+  EXPECT_FALSE(problem_of("can0", down, {})) << "the node waits for it";
+  EXPECT_EQ(to_text("can0", down), "can0 at 250 kbit/s, which is down");
+  EXPECT_EQ(command_for("can0", down, {}),
+            "ip link set can0 up type can bitrate 250000 restart-ms 100");
+  down.bit_rate_per_s.reset();
+  EXPECT_EQ(command_for("vcan0", down, {}), "ip link set vcan0 up");
+}
+
+TEST(CanInterface, NamesAreShownPrintableAndNotBeyondTheirLength) {
+  const auto odd = problem_of("can\n0", {}, {});
+  ASSERT_TRUE(odd);
+  EXPECT_EQ(odd->what.find('\n'), std::string::npos);
+  EXPECT_EQ(look_at_can("a-name-longer-than-any-interface").index, 0);
+}
+
+}  // namespace
+}  // namespace flatpose::port
