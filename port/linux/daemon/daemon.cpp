@@ -101,9 +101,11 @@ void warn(const Config& config, const JobSet& jobs, Log& log) {
   if (!config.modbus.is_on && !config.can.is_on)
     log.line("warning: no [modbus] and no [can]: nobody can ask for anything");
   for (const JobConfig& job : config.jobs) {
-    if (config.can.is_on && job.rule.convention == Convention::kAbbQuaternion)
+    const bool has_pdos_alone = config.can.is_on && !config.can.node.fd_frame;
+    if (has_pdos_alone && job.rule.convention == Convention::kAbbQuaternion)
       log.line("warning: job " + std::to_string(job.rule.job) +
-               ": a quaternion has no room in CAN's PDOs, where its status is out_of_range");
+               ": a quaternion has no room in CAN's PDOs, where its status is out_of_range; on an "
+               "FD bus fd_frame has");
   }
   if (!config.source.is_any()) log.line("warning: no [source]: there are no scans");
   if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");

@@ -127,6 +127,17 @@ const result_map::Entry& entry_of(const json& line) {
   return *result_map::entry_at(line.at("address").get<int>());
 }
 
+TEST(MapCommand, TheDbcHasTheNodeAndTheFdIdentifierOfTheConfig) {
+  const port::TemporaryFolder folder;
+  const std::string path = folder.write("f.toml", "[can]\nnode = 33\nfd_frame_id = 0x6a1\n");
+  const std::string text = run({"map", "--format", "dbc", "--config", path}).out;
+  EXPECT_NE(text.find("BO_ 417 FLATPOSE_STATUS: 8"), std::string::npos);
+  EXPECT_NE(text.find("BO_ 1697 FLATPOSE_RESULT: 64"), std::string::npos);
+  EXPECT_NE(text.find("BA_ \"VFrameFormat\" BO_ 1697 14;"), std::string::npos);
+  EXPECT_NE(run({"map", "--format", "dbc", "--node", "33"}).out.find("BO_ 1313 FLATPOSE_RESULT"),
+            std::string::npos);
+}
+
 TEST(MapCommand, ShowsTheMapAsAConfigServesIt) {
   const port::TemporaryFolder folder;
   const std::string path = folder.write(
