@@ -260,7 +260,7 @@ void Device::look_at_fd(const job::Snapshot& snapshot, Report& fresh) noexcept {
   std::int32_t& sequence = fresh[ReportField::kSequence];
   const bool is_counted = sequence != report_[ReportField::kSequence];
   if (!is_counted && !is_same_result(fd_bytes_, before)) sequence = (sequence + 1) & 0xff;
-  if (!(fresh == report_) || !is_same_but_age(fd_bytes_, before)) fd_pdo_.event();
+  if (!(fresh == report_)) fd_pdo_.event();
 }
 
 void Device::tell_fault(const job::Snapshot& snapshot) noexcept {

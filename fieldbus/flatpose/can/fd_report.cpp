@@ -102,11 +102,4 @@ bool is_same_result(const FdBytes& a, const FdBytes& b) noexcept {
   return true;
 }
 
-bool is_same_but_age(const FdBytes& a, const FdBytes& b) noexcept {
-  for (std::size_t i = 1; i < kFdBytesMax; ++i) {
-    if (!is_of_age(i) && a[i] != b[i]) return false;
-  }
-  return true;
-}
-
 }  // namespace flatpose::can

@@ -45,7 +45,5 @@ void grow_older(FdBytes& bytes, std::int64_t time_us) noexcept;
 
 /// Whether both tell of the same result; bits, judgement and age may differ.
 [[nodiscard]] bool is_same_result(const FdBytes& a, const FdBytes& b) noexcept;
-/// Whether nothing differs but the age and the sequence.
-[[nodiscard]] bool is_same_but_age(const FdBytes& a, const FdBytes& b) noexcept;
 
 }  // namespace flatpose::can

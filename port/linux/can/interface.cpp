@@ -49,7 +49,8 @@ CanInterface look_at_can(const std::string& name) {
   if (found.index == 0) return found;
   look_at_link(name, found);
   int state = CAN_STATE_ERROR_ACTIVE;
-  found.is_bus_off = can_get_state(name.c_str(), &state) == 0 && state == CAN_STATE_BUS_OFF;
+  found.is_virtual = can_get_state(name.c_str(), &state) != 0;
+  found.is_bus_off = !found.is_virtual && state == CAN_STATE_BUS_OFF;
   can_bittiming timing{};
   if (can_get_bittiming(name.c_str(), &timing) == 0 && timing.bitrate != 0)
     found.bit_rate_per_s = timing.bitrate;
@@ -66,10 +67,9 @@ std::string to_text(const std::string& name, const CanInterface& interface) {
 std::string command_for(const std::string& name, const CanInterface& interface,
                         const CanNeed& need) {
   const std::string link = "ip link set " + printable(name, IFNAMSIZ);
-  const bool is_virtual = interface.index != 0 && !interface.bit_rate_per_s;
-  if (is_virtual && need.fd && !interface.carries_fd)
+  if (interface.is_virtual && need.fd && !interface.carries_fd)
     return link + " down; " + link + " mtu 72; " + link + " up";
-  if (is_virtual) return link + " up";
+  if (interface.is_virtual) return link + " up";
   const std::uint32_t rate_per_s = need.bit_rate_per_s != 0
                                        ? need.bit_rate_per_s
                                        : interface.bit_rate_per_s.value_or(kUsualBitRate_per_s);

@@ -13,6 +13,7 @@ struct CanInterface {
   bool has_kernel_can = true;  ///< Else there is nothing more to say.
   int index = 0;               ///< 0: there is none of this name.
   bool is_up = false;
+  bool is_virtual = false;                           ///< It has no controller that could be set up.
   bool is_bus_off = false;                           ///< As far as the driver says.
   bool carries_fd = false;                           ///< It takes CAN FD frames.
   std::optional<std::uint32_t> bit_rate_per_s = {};  ///< Virtual ones have none.

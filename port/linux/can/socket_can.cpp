@@ -232,7 +232,7 @@ can::Link::Received SocketCan::receive() noexcept {
     }
     if (take_error_frame(raw.can_id, raw.data[1])) return state(state_);
   }
-  return {};
+  return state(state_);  // nothing new, but nothing says that the queue is empty
 }
 
 bool SocketCan::send(const can::Frame& frame) noexcept {

@@ -123,6 +123,7 @@ TEST(CanFd, IsTurnedOnAndOffBySdo) {
   EXPECT_EQ(node.write(kIndex, 1, kOn, 4), Abort::kNone);
   EXPECT_EQ(node.read(kIndex, 1), kOn);
   EXPECT_EQ(fd_count(node.sent), 1) << "told at once";
+  EXPECT_EQ(node.sent.back().id, 0x58aU);
   EXPECT_EQ(node.whole().data[0], node.tpdo(0).data[0]);
   EXPECT_EQ(node.write(kIndex, 1, kOff, 4), Abort::kNone);
   node.desk.live();
@@ -136,6 +137,43 @@ TEST(CanFd, IsTurnedOnAndOffBySdo) {
   EXPECT_EQ(node.read(kIndex, 1), 0x400006b0U);
   node.network(NetworkCommand::kResetCommunication);
   EXPECT_EQ(node.read(kIndex, 1), kOff);
+}
+
+TEST(CanFd, ThatIsTurnedOnTellsWhatThereIsAndMakesNoOtherResultOfIt) {
+  Node node({.heartbeat_ms = 0, .carries_fd = true});
+  node.desk.live();
+  node.start();
+  node.rpdo(1);
+  node.desk.finish(node.desk.found());
+  node.pass(10 * kMs);
+  const int sequence = node.told(Field::kSequence);
+  node.sent.clear();
+  EXPECT_EQ(node.write(kIndex, 1, kOn, 4), Abort::kNone);
+  node.pass(10 * kMs);
+  ASSERT_EQ(node.sent.size(), 2U) << "the frame and the answer";
+  EXPECT_EQ(node.whole().data[0], sequence);
+  EXPECT_EQ(number(node.whole(), 8, 4), 10'000U);
+}
+
+TEST(CanFd, TellsThatAPoseHasExpired) {
+  Node node(kWithFd);
+  node.desk.live();
+  node.start();
+  node.rpdo(1);  // job 1's are fresh for three seconds
+  job::ScanResult far = node.desk.found();
+  far.matches[0].frame_T_pick.position_mm.x = 9000;
+  node.desk.finish(far);
+  node.pass(10 * kMs);
+  ASSERT_TRUE(node.whole().data[2] & job::kValid);
+  node.pass(2'900 * kMs);
+  node.desk.live();
+  node.pass(10 * kMs);
+  const auto frames = node.pass(200 * kMs);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_TRUE(frames[0].is_fd);
+  EXPECT_FALSE(frames[0].data[2] & job::kValid);
+  EXPECT_EQ(static_cast<std::int8_t>(frames[0].data[1]), static_cast<int>(job::Answer::kExpired));
+  EXPECT_EQ(number(frames[0], 8, 4), 0x80000000U);
 }
 
 TEST(CanFd, RefusesIdentifiersThatHaveAnotherUse) {

@@ -10,7 +10,7 @@ namespace flatpose::port {
 namespace {
 
 constexpr CanInterface kReal{.index = 3, .is_up = true, .bit_rate_per_s = 250'000};
-constexpr CanInterface kVirtual{.index = 4, .is_up = true};
+constexpr CanInterface kVirtual{.index = 4, .is_up = true, .is_virtual = true};
 
 CanInterface with_fd(CanInterface interface) {
   interface.carries_fd = true;
@@ -64,7 +64,14 @@ TEST(CanInterface, ThatIsDownIsBroughtUpByItsCommand) {
   EXPECT_EQ(command_for("can0", down, {}),
             "ip link set can0 up type can bitrate 250000 restart-ms 100");
   down.bit_rate_per_s.reset();
-  EXPECT_EQ(command_for("vcan0", down, {}), "ip link set vcan0 up");
+  EXPECT_EQ(command_for("can0", down, {.fd = true}),
+            "ip link set can0 up type can bitrate 250000 dbitrate 2000000 fd on restart-ms 100")
+      << "not set up yet";
+  EXPECT_EQ(command_for("can0", down, {.bit_rate_per_s = 125'000}),
+            "ip link set can0 up type can bitrate 125000 restart-ms 100");
+  CanInterface off = kVirtual;
+  off.is_up = false;
+  EXPECT_EQ(command_for("vcan0", off, {}), "ip link set vcan0 up");
 }
 
 TEST(CanInterface, NamesAreShownPrintableAndNotBeyondTheirLength) {
