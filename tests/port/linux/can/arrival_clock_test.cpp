@@ -25,26 +25,47 @@ TEST(ArrivalClock, IsNowWithoutAStampAndNeverLaterNorVeryLongAgo) {
   EXPECT_EQ(clock.arrived_us({1, 0}), 40'000'000);
 }
 
-TEST(ArrivalClock, OfAClockThatWasSetSaysNowUntilTheQueueIsEmpty) {
-  for (const std::int64_t step_us :
-       {3'600 * kSecond_us, -3'600 * kSecond_us, 200'000L, -200'000L}) {
-    ArrivalClock clock;
-    std::int64_t now_us = 5'000'000, real_us = kReal_us;
-    clock.look(now_us, real_us);
-    const std::int64_t old_stamp_us = real_us + 10;
-    now_us += 400'000;
-    real_us += 400'000 + step_us;
-    clock.look(now_us, real_us);
-    EXPECT_EQ(clock.arrived_us({old_stamp_us, 0}), now_us) << step_us;
-    EXPECT_EQ(clock.arrived_us({real_us - 10, 0}), now_us) << "which of them it is nothing tells";
-    now_us += 100;
-    real_us += 100;
-    clock.look(now_us, real_us);
-    EXPECT_EQ(clock.arrived_us({old_stamp_us + 20, 0}), now_us) << "it waited as long";
-    clock.drained();
-    clock.look(now_us, real_us);
-    EXPECT_EQ(clock.arrived_us({real_us - 30, 0}), now_us - 30);
+// Ten frames wait, a tenth of a second apart; before one of them the clock is set.
+TEST(ArrivalClock, ThatWasSetWhileFramesWaitedTellsWhenTheyCame) {
+  for (const std::int64_t step_us : {3'600 * kSecond_us, -3'600 * kSecond_us, 20 * kSecond_us}) {
+    for (std::int64_t set_before = 0; set_before <= 10; ++set_before) {
+      ArrivalClock clock;
+      clock.look(5'000'000, kReal_us + 5'000'000);
+      clock.drained();
+      clock.look(5'000'100, kReal_us + 5'000'100);
+      for (std::int64_t i = 0; i < 10; ++i) {
+        const std::int64_t arrived_us = 5'100'000 + i * 100'000;
+        const std::int64_t read_us = 6'200'000 + i * 50;
+        clock.look(read_us, kReal_us + read_us + step_us);
+        const std::int64_t stamp_us = kReal_us + arrived_us + (i >= set_before ? step_us : 0);
+        EXPECT_EQ(clock.arrived_us({stamp_us, 0}), arrived_us) << step_us << ", " << set_before;
+      }
+      clock.drained();
+      clock.look(6'300'000, kReal_us + 6'300'000 + step_us);
+      EXPECT_EQ(clock.arrived_us({kReal_us + 6'299'990 + step_us, 0}), 6'299'990);
+    }
   }
+}
+
+TEST(ArrivalClock, WhereBothFitItIsTheLaterAndWhereNoneDoesItIsNow) {
+  ArrivalClock clock;
+  clock.look(5'000'000, kReal_us + 5'000'000);
+  clock.drained();
+  clock.look(6'000'000, kReal_us + 6'000'000 - 300'000);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 5'200'000, 0}), 5'500'000) << "or 5.2 s";
+  EXPECT_EQ(clock.arrived_us({kReal_us + 5'400'000, 0}), 5'700'000) << "or 5.4 s, before the last";
+  EXPECT_EQ(clock.arrived_us({kReal_us + 99'000'000, 0}), 6'000'000);
+  EXPECT_EQ(clock.arrived_us({}), 6'000'000);
+}
+
+TEST(ArrivalClock, ThatWasSetTwiceSaysNowToWhatCameBetween) {
+  ArrivalClock clock;
+  clock.look(5'000'000, kReal_us);
+  clock.drained();
+  clock.look(5'100'000, kReal_us + 60 * kSecond_us);
+  clock.look(5'200'000, kReal_us - 60 * kSecond_us);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 50'000, 0}), 5'050'000);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 60 * kSecond_us + 50'000, 0}), 5'200'000);
 }
 
 TEST(ArrivalClock, ThatWasSetWhileTheQueueWasFoundEmptyIsStillFoundOut) {
@@ -52,7 +73,7 @@ TEST(ArrivalClock, ThatWasSetWhileTheQueueWasFoundEmptyIsStillFoundOut) {
   clock.look(5'000'000, kReal_us);
   clock.drained();
   clock.look(5'000'100, kReal_us + 100 - 60 * kSecond_us);
-  EXPECT_EQ(clock.arrived_us({kReal_us + 50, 0}), 5'000'100);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 50, 0}), 5'000'050);
 }
 
 TEST(ArrivalClock, StandsAClockThatIsSlewed) {

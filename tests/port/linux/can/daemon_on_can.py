@@ -592,8 +592,11 @@ class Link(Guest):
         self.inject(RESTARTED)
         self.works_again(5)
 
-    def stall(self, stop_s, beats):
+    def stall(self, stop_s, beats, step_s=0):
         """The daemon stands still while heartbeats come, or do not; what it makes of that."""
+        def set_clock(by_s):
+            time.clock_settime(time.CLOCK_REALTIME, time.time() + by_s)
+
         master = self.master
         self.assertEqual(master.write(0x1016, 1, struct.pack("<I", MASTER << 16 | 600)), 0)
         master.start()
@@ -602,6 +605,10 @@ class Link(Guest):
         self.daemon.process.send_signal(signal.SIGSTOP)
         end = time.monotonic() + stop_s
         while time.monotonic() < end:
+            if step_s and end - time.monotonic() < stop_s / 2:
+                set_clock(step_s)
+                self.addCleanup(set_clock, -step_s)
+                step_s = 0
             if beats:
                 master.send(0x700 + MASTER, b"\x05")
             time.sleep(0.05)
@@ -616,6 +623,10 @@ class Link(Guest):
         """By the kernel's stamps; on a virtual interface those of software, for it has no others."""
         self.assertEqual(self.stall(2.0, beats=True), [])
         self.assertEqual(self.master.states[-1], 5, "operational")
+
+    def test_heartbeats_came_in_time_though_the_clock_was_set_among_them(self):
+        for step_s in (3600, -3600):
+            self.assertEqual(self.stall(2.0, beats=True, step_s=step_s), [], step_s)
 
     def test_heartbeats_that_did_not_come_while_it_stood_still_are_lost(self):
         self.assertEqual(self.stall(2.0, beats=False), [0x8130])
