@@ -72,8 +72,7 @@ job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
   }
   frames_ = job_->alignment.frames(result_.frame, scan.up);
   trace_.frames = frames_;
-  // A robot's frame is z up too.
-  trace_.face = result_.frame == job::FrameName::kScan ? model::Frame::kScan : model::Frame::kWork;
+  trace_.face = result_.frame;
   int index = 0;
   for (const int part : job_->config.parts) search_part(part, ++index, order, scan, host);
   if (result_.match_count == 0 && job::may_have_pose(result_.answer))

@@ -272,14 +272,14 @@ void SearchEngine::fill(port::Record& record, const job::Order& order, const Hel
   tool::LoadedScan& loaded = record.loaded;
   loaded.scan.width_px = loaded.scan.height_px = 0;
   loaded.path.clear();
-  loaded.frames = record.trace.frames;
-  loaded.frame = record.trace.face;
   if (scan == nullptr) return;
   loaded.path = scan->name;
   loaded.load_us = scan->load_us;
   loaded.scan.up = scan->up;
   loaded.scan.up_reason = scan->up_reason;
-  if (record.trace.part_count == 0) loaded.frames = frames_of_scan(scan->up == port::Up::kPlusZ);
+  const bool was_searched = record.trace.part_count > 0;  // else the trace's frames are older
+  loaded.frame = was_searched ? record.trace.face : job::FrameName::kScan;
+  loaded.frames = was_searched ? record.trace.frames : frames_of_scan(scan->up == port::Up::kPlusZ);
   copy_scan(scan->view, loaded.scan);
 }
 

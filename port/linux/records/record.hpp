@@ -24,7 +24,7 @@ struct SearchedPart {
 /// A job's searches, part by part.
 struct SearchTrace {
   Frames frames;
-  model::Frame face = model::Frame::kScan;
+  job::FrameName face = job::FrameName::kScan;  ///< That its poses are in.
   std::array<SearchedPart, kPartsPerSearchMax> parts;
   int part_count = 0;
 

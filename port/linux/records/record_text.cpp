@@ -160,10 +160,7 @@ std::string record_json(const Record& record, const RecordName& name) {
   Json json;
   json["status"] = job::to_string(record.result.answer);
   json["matches"] = Json::array();
-  if (record.trace.part_count > 0) {
-    json = searched_json(record);
-    json["frame"] = job::name_of(job::frame_names(), static_cast<int>(record.result.frame));
-  }
+  if (record.trace.part_count > 0) json = searched_json(record);
   json["status"] = job::to_string(record.result.answer);
   add_asked(json, record, name);
   json["told"] = told_json(record.result);

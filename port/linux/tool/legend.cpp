@@ -31,8 +31,8 @@ void draw_scale_bar(Canvas& canvas, double px_per_mm, double x, double y) {
   canvas.text(x, y + 23.0, formatted("%g mm", length_mm));
 }
 
-// The tint as z in the frame at the face: in a scan seen along +z it falls toward the top.
-double draw_heights(Canvas& canvas, const Relief& relief, int up_sign, double right, double y) {
+double draw_heights(Canvas& canvas, const Relief& relief, const Frames& frames, double right,
+                    double y) {
   constexpr int kWidth = 150;
   for (int i = 0; i < kWidth; ++i) {
     canvas.colour(tint(i / (kWidth - 1.0)));
@@ -40,10 +40,9 @@ double draw_heights(Canvas& canvas, const Relief& relief, int up_sign, double ri
   }
   canvas.font(13.0);
   canvas.colour(kInk);
-  const std::string low = formatted("z %.1f", up_sign * relief.low_mm);
-  const std::string high = formatted("%.1f mm", up_sign * relief.high_mm);
-  canvas.text(right - kWidth, y + 23.0, low);
-  canvas.text(right - canvas.text_width(high), y + 23.0, high);
+  const HeightText text = height_text(relief, frames);
+  canvas.text(right - kWidth, y + 23.0, text.low);
+  canvas.text(right - canvas.text_width(text.high), y + 23.0, text.high);
   return right - kWidth;
 }
 
@@ -74,6 +73,26 @@ std::string shortened(const Canvas& canvas, std::string text, double width_px) {
 
 }  // namespace
 
+HeightText height_text(const Relief& relief, const Frames& frames) {
+  constexpr double kShown_mm = 0.1;
+  const auto& to_z = frames.face_T_work.rotation.m;
+  const rectify::Grid& grid = relief.grid;
+  const double across_mm =
+      grid.cell_mm * (std::fabs(to_z[6]) * grid.width_px + std::fabs(to_z[7]) * grid.height_px);
+  const bool is_above_plane = across_mm > 0.5 * kShown_mm;
+  const auto shown = [&](double height_mm) {
+    const Vec3 middle{grid.x_of(0.5 * grid.width_px), grid.y_of(0.5 * grid.height_px), height_mm};
+    return is_above_plane ? height_mm : (frames.face_T_work * middle).z;
+  };
+  return {formatted(is_above_plane ? "height %.1f" : "z %.1f", shown(relief.low_mm)),
+          formatted("%.1f mm", shown(relief.high_mm))};
+}
+
+std::string frame_text(const LoadedScan& loaded) {
+  return formatted("frame %s, seen from above (%s by %s)", loaded.frame_name(),
+                   port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str());
+}
+
 void draw_legend(Canvas& canvas, double px_per_mm, const Relief& relief, const std::string& title,
                  const LoadedScan& loaded) {
   const double top = canvas.height_px() - kLegend_px;
@@ -84,7 +103,7 @@ void draw_legend(Canvas& canvas, double px_per_mm, const Relief& relief, const s
   if (!relief.xrgb.empty()) {
     draw_scale_bar(canvas, px_per_mm, left, top + 16.0);
     left += 190.0;
-    right = draw_heights(canvas, relief, loaded.up_sign(), right, top + 14.0) - 20.0;
+    right = draw_heights(canvas, relief, loaded.frames, right, top + 14.0) - 20.0;
     right = draw_key(canvas, right, top + 23.0) - 16.0;
   }
   canvas.font(15.0, true);
@@ -92,10 +111,7 @@ void draw_legend(Canvas& canvas, double px_per_mm, const Relief& relief, const s
   canvas.text(left, top + 23.0, shortened(canvas, title, right - left));
   canvas.font(12.0);
   canvas.colour(kFaint);
-  const std::string detail =
-      formatted("frame %s, seen from above (%s by %s)", loaded.frame_name(),
-                port::to_string(loaded.scan.up), loaded.scan.up_reason.c_str());
-  canvas.text(left, top + 41.0, shortened(canvas, detail, right - left));
+  canvas.text(left, top + 41.0, shortened(canvas, frame_text(loaded), right - left));
 }
 
 }  // namespace flatpose::tool

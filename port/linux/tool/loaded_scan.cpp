@@ -21,7 +21,7 @@ void align(LoadedScan& loaded, const ScanOptions& options) {
   loaded.scan.up = work.up;
   if (!options.up) loaded.scan.up_reason = "work";
   loaded.frames = frames_of_work(work.work_T_scan);
-  loaded.frame = model::Frame::kWork;
+  loaded.frame = job::FrameName::kWork;
 }
 
 }  // namespace

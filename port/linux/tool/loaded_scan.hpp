@@ -1,11 +1,12 @@
 #pragma once
-// A scan with the frames that it is seen in: as the sensor gave it, or as a work file aligned it.
+// A scan with the frames that it is seen in: as the sensor gave it, as a work file aligned it, or
+// as a robot has it.
 
 #include <cstdint>
 #include <string>
 
 #include "flatpose/geometry/frames.hpp"
-#include "flatpose/model/template.hpp"
+#include "flatpose/job/command.hpp"
 #include "port/linux/files/scan.hpp"
 
 namespace flatpose::tool {
@@ -16,16 +17,16 @@ struct LoadedScan {
   std::string path;
   port::Scan scan;
   Frames frames;
-  model::Frame frame = model::Frame::kScan;  ///< That coordinates and poses are in.
+  job::FrameName frame = job::FrameName::kScan;  ///< The face: that coordinates and poses are in.
   std::int64_t load_us = 0;
 
-  /// "scan" or "work".
+  /// "scan", "work" or "robot".
   [[nodiscard]] const char* frame_name() const noexcept {
-    return frame == model::Frame::kWork ? "work" : "scan";
+    return job::name_of(job::frame_names(), static_cast<int>(frame));
   }
-  /// Up in the frame at the face: a work frame has z up always.
+  /// Up in the frame at the face: all but a scan's have z up.
   [[nodiscard]] int up_sign() const noexcept {
-    return frame == model::Frame::kWork || scan.up == port::Up::kPlusZ ? 1 : -1;
+    return frame != job::FrameName::kScan || scan.up == port::Up::kPlusZ ? 1 : -1;
   }
 };
 

@@ -96,7 +96,8 @@ Lesson load(const Options& options) {
   }
   const LoadedScan& first = lesson.scans.front();
   lesson.config.up = static_cast<std::int8_t>(first.up_sign());
-  lesson.config.frame = first.frame;
+  lesson.config.frame =
+      first.frame == job::FrameName::kWork ? model::Frame::kWork : model::Frame::kScan;
   if (options.mask_path.empty()) return lesson;
   lesson.mask_path = options.mask_path;
   lesson.mask = port::read_mask_png(options.mask_path, first.scan.width_px, first.scan.height_px,

@@ -3,59 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 
 #include "port/linux/files/work_file.hpp"
 #include "port/linux/tool/work_plane.hpp"
+#include "tests/port/linux/daemon/rows.hpp"
 #include "tests/port/linux/daemon/served.hpp"
 
 namespace flatpose::daemon {
 namespace {
 
 using job::Answer;
-
-/// Products and inverses of the test's own: a pose as four rows of four.
-struct Rows {
-  double m[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-
-  static Rows of(const Pose& pose) {
-    Rows r;
-    const double p[] = {pose.position_mm.x, pose.position_mm.y, pose.position_mm.z};
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) r.m[i][j] = pose.rotation.m[static_cast<std::size_t>(3 * i + j)];
-      r.m[i][3] = p[i];
-    }
-    return r;
-  }
-  static Rows at(double x, double y, double z) { return of({{}, {x, y, z}}); }
-  /// A turn by degrees about x (0), y (1) or z (2).
-  static Rows about(int axis, double degrees) {
-    Rows r;
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
-    r.m[a][a] = r.m[b][b] = c;
-    r.m[a][b] = -s;
-    r.m[b][a] = s;
-    return r;
-  }
-  friend Rows operator*(const Rows& x, const Rows& y) {
-    Rows r;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) {
-        r.m[i][j] = 0;
-        for (int k = 0; k < 4; ++k) r.m[i][j] += x.m[i][k] * y.m[k][j];
-      }
-    return r;
-  }
-  [[nodiscard]] Pose pose() const {
-    Pose p;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) p.rotation.m[static_cast<std::size_t>(3 * i + j)] = m[i][j];
-    p.position_mm = {m[0][3], m[1][3], m[2][3]};
-    return p;
-  }
-};
 
 class JobsServed : public Served {
  protected:
@@ -130,24 +88,6 @@ TEST_F(JobsServed, ReferenceRotationChoosesTheBranch) {
   EXPECT_NEAR(turns(near[Field::kRotation1]), 1.0, 0.5);
   EXPECT_LT(std::fabs(turns(plain[Field::kRotation1])), 0.5 + 1e-6);
 }
-
-/// As the tool writes them.
-std::string robot_json(const Rows& robot_T_scan) {
-  std::string text =
-      "{\"format\":\"flatpose-robot\",\"version\":1,\"robot_T_scan\":"
-      "{\"position_mm\":[";
-  for (int i = 0; i < 3; ++i) text += (i ? "," : "") + std::to_string(robot_T_scan.m[i][3]);
-  text += "],\"rotation\":[";
-  char number[40];
-  for (int i = 0; i < 9; ++i) {
-    std::snprintf(number, sizeof number, "%s%.17g", i ? "," : "", robot_T_scan.m[i / 3][i % 3]);
-    text += number;
-  }
-  return text + "]}}";
-}
-
-const Rows kRobotTScan =
-    Rows::at(850, -200, 1200) * Rows::about(2, 35) * Rows::about(1, 4) * Rows::about(0, 176);
 
 TEST_F(JobsServed, RobotFrameIsTheAlignmentsTimesTheJsonsPose) {
   folder_.write("robot.json", robot_json(kRobotTScan));
