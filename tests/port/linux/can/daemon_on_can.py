@@ -336,6 +336,10 @@ class Fd(Guest):
         self.assertTrue(master.wait_for(lambda: master.whole.get("done") == number), master.whole)
         return master.whole
 
+    def set_mtu(self, mtu):
+        for change in (("down",), ("mtu", str(mtu)), ("up",)):
+            run("ip", "link", "set", "vcan0", *change)
+
     def test_is_the_pose_of_flatpose_locate_and_all_else_of_it(self):
         master = self.master
         master.start()
@@ -399,13 +403,11 @@ class Fd(Guest):
         self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_ON)), 0)
         self.assertEqual(self.whole_of(1)["status"], 0)
 
-    def test_is_nothing_on_an_interface_that_has_become_classic(self):
+    def test_is_nothing_while_the_interface_is_a_classic_one(self):
         master = self.master
         master.start()
-        run("ip", "link", "set", "vcan0", "down")
-        run("ip", "link", "set", "vcan0", "mtu", "16")
-        self.addCleanup(run, "sh", "-c", "ip link set vcan0 down; ip link set vcan0 mtu 72; ip link set vcan0 up")
-        run("ip", "link", "set", "vcan0", "up")
+        self.addCleanup(self.set_mtu, 72)
+        self.set_mtu(16)
         master.close()
         master.__init__()
         self.assertTrue(master.wait_for(lambda: master.states))
@@ -420,6 +422,14 @@ class Fd(Guest):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("vcan0 is classic", refused.stderr)
         self.assertIn("ip link set vcan0 mtu 72", refused.stderr)
+        self.set_mtu(72)
+        master.close()
+        master.__init__()
+        self.assertTrue(master.wait_for(lambda: master.states))
+        master.start()
+        self.assertEqual(master.write(0x2006, 1, struct.pack("<I", FD_ON)), 0)
+        master.command(4)
+        self.assertEqual(self.whole_of(4)["status"], 0)
 
 
 class Triggers(Guest):
