@@ -52,10 +52,14 @@ TEST(ArrivalClock, WhereBothFitItIsTheLaterAndWhereNoneDoesItIsNow) {
   clock.look(5'000'000, kReal_us + 5'000'000);
   clock.drained();
   clock.look(6'000'000, kReal_us + 6'000'000 - 300'000);
-  EXPECT_EQ(clock.arrived_us({kReal_us + 5'200'000, 0}), 5'500'000) << "or 5.2 s";
-  EXPECT_EQ(clock.arrived_us({kReal_us + 5'400'000, 0}), 5'700'000) << "or 5.4 s, before the last";
-  EXPECT_EQ(clock.arrived_us({kReal_us + 99'000'000, 0}), 6'000'000);
-  EXPECT_EQ(clock.arrived_us({}), 6'000'000);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 4'600'000, 0}), 6'000'000) << "before all was read";
+  clock.drained();
+  clock.look(6'000'000, kReal_us + 5'700'000);
+  clock.look(7'000'000, kReal_us + 6'400'000);
+  EXPECT_EQ(clock.arrived_us({kReal_us + 5'800'000, 0}), 6'400'000) << "or 6.1 s";
+  EXPECT_EQ(clock.arrived_us({kReal_us + 5'700'001, 0}), 7'000'000) << "before the last";
+  EXPECT_EQ(clock.arrived_us({kReal_us + 99'000'000, 0}), 7'000'000);
+  EXPECT_EQ(clock.arrived_us({}), 7'000'000);
 }
 
 TEST(ArrivalClock, ThatWasSetTwiceSaysNowToWhatCameBetween) {

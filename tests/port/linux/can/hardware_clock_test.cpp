@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -124,6 +125,15 @@ TEST(HardwareClock, ThatStandsStillOrHasNoStampIsNotUsed) {
     for (const Frame& frame : frames(4, 0.0, 500))
       EXPECT_EQ(clock.arrived_us(stuck_us, frame.software_us), frame.software_us);
   }
+}
+
+TEST(HardwareClock, StampsThatNoClockHasAreNotUsed) {
+  HardwareClock clock;
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t odd_us :
+       {kLeast, kLeast + 7, std::int64_t{-1}, kMost - 1, kMost, kMost / 2, kLeast / 2})
+    EXPECT_EQ(clock.arrived_us(odd_us, 5'000'000), 5'000'000);
 }
 
 TEST(HardwareClock, FramesWithoutAStampAmongOthersDoNotDisturb) {
