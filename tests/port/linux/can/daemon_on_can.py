@@ -440,6 +440,7 @@ class Triggers(Guest):
         times = []
         with can.Bus("vcan0", bustype="socketcan", receive_own_messages=True) as bus:
             for number in range(2001, 2001 + count):
+                time.sleep(0.003)  # beyond TPDO1's inhibit time
                 bus.send(can.Message(arbitration_id=0x200 + NODE, data=struct.pack("<HHBBH", number, 0, 1, 0, 1),
                                      is_extended_id=False))
                 arrived, done = None, False
