@@ -168,8 +168,9 @@ std::string Recorder::write_record() {
 }
 
 // The picture is of the newest record, or not there: a scan may be missing, or not to be drawn.
+// What is copied here from the records need not outlast a loss of power.
 void Recorder::put_last(const std::string& json) {
-  folder_.put(kLastResult, bytes_of(json));
+  folder_.put(kLastResult, bytes_of(json), port::NewName::kMayBeLost);
   if (!config_.draws) return;
   std::vector<std::byte> png;
   try {
@@ -180,7 +181,7 @@ void Recorder::put_last(const std::string& json) {
   if (png.empty()) {
     std::filesystem::remove(folder_.path_of(kLastPicture), ignored);
   } else {
-    folder_.put(kLastPicture, png);
+    folder_.put(kLastPicture, png, port::NewName::kMayBeLost);
   }
 }
 
@@ -208,7 +209,8 @@ void Recorder::write_pick(const port::Pick& pick) {
   const std::string path = folder_.path_of(name->text() + ".json");
   const std::string json = port::with_pick(path, text_of(path), pick);
   folder_.put(name->text() + ".json", bytes_of(json));
-  if (name->sequence == last_sequence_) folder_.put(kLastResult, bytes_of(json));
+  if (name->sequence == last_sequence_)
+    folder_.put(kLastResult, bytes_of(json), port::NewName::kMayBeLost);
 }
 
 void Recorder::count_pick(const port::Pick& pick) {

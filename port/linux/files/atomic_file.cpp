@@ -155,7 +155,8 @@ std::vector<std::byte> read_file(const std::string& path, std::int64_t bytes_max
   return bytes;
 }
 
-void write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
+void write_file_atomically(const std::string& path, std::span<const std::byte> bytes,
+                           NewName name) {
   if (path.empty()) throw InputError("output", "its name is empty", "name a file");
   const std::string target = resolved(path);
   if (target.back() == '/') throw InputError(path, "it is a folder", "name a file in it");
@@ -172,13 +173,14 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
   write_all(path, temporary.fd(), bytes);
   if (exists && ::fchmod(temporary.fd(), info.st_mode & 07777) != 0) fail_writing(path, errno);
   temporary.rename_to(path, target);
-  // The new name must outlast a loss of power too; a folder that cannot be synced is no failure.
+  if (name == NewName::kMayBeLost) return;
+  // A folder that cannot be synced is no failure.
   const Descriptor parent(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (parent.get() >= 0) ::fsync(parent.get());
 }
 
-void write_file_atomically(const std::string& path, std::string_view text) {
-  write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+void write_file_atomically(const std::string& path, std::string_view text, NewName name) {
+  write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())), name);
 }
 
 }  // namespace flatpose::port

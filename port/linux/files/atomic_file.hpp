@@ -17,10 +17,17 @@ namespace flatpose::port {
 /// `bytes_max`. Memory: the file's length, whatever is said inside it.
 [[nodiscard]] std::vector<std::byte> read_file(const std::string& path, std::int64_t bytes_max);
 
+/// What a loss of power may do to a file that was written: nothing, or put back what stood at its
+/// path before, until the folder is synced for another file. Half of it is never there.
+enum class NewName : std::uint8_t { kOutlastsPower, kMayBeLost };
+
 /// Puts `bytes` at `path`, replacing what stands there (a link is followed, rights are kept).
+/// Cost: waits for the disk, twice when the name is to outlast a loss of power.
 /// Fails: InputError; then `path` is as it was and no temporary file is left.
-void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
-void write_file_atomically(const std::string& path, std::string_view text);
+void write_file_atomically(const std::string& path, std::span<const std::byte> bytes,
+                           NewName name = NewName::kOutlastsPower);
+void write_file_atomically(const std::string& path, std::string_view text,
+                           NewName name = NewName::kOutlastsPower);
 
 /// The bytes as characters, without a copy.
 [[nodiscard]] inline std::string_view as_text(std::span<const std::byte> bytes) noexcept {

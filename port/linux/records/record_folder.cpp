@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <map>
 
-#include "port/linux/files/atomic_file.hpp"
 #include "port/linux/files/input_error.hpp"
 
 namespace flatpose::port {
@@ -154,7 +153,8 @@ void RecordFolder::save(const RecordName& name, std::span<const std::byte> scan,
 void RecordFolder::write(const RecordName& name, std::span<const std::byte> scan,
                          std::string_view json) {
   const std::string stem = path_of(name.text());
-  if (!scan.empty()) write_file_atomically(stem + ".pcd", scan);
+  // One sync of the folder is for both names.
+  if (!scan.empty()) write_file_atomically(stem + ".pcd", scan, NewName::kMayBeLost);
   try {
     write_file_atomically(stem + ".json", json);
   } catch (...) {
@@ -163,8 +163,9 @@ void RecordFolder::write(const RecordName& name, std::span<const std::byte> scan
   }
 }
 
-void RecordFolder::put(const std::string& file_name, std::span<const std::byte> bytes) {
-  write_file_atomically(path_of(file_name), bytes);
+void RecordFolder::put(const std::string& file_name, std::span<const std::byte> bytes,
+                       NewName name) {
+  write_file_atomically(path_of(file_name), bytes, name);
 }
 
 std::optional<RecordName> RecordFolder::find(std::uint16_t number, std::uint64_t sequence) const {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "port/linux/files/atomic_file.hpp"
 #include "port/linux/records/record_name.hpp"
 
 namespace flatpose::port {
@@ -39,7 +40,8 @@ class RecordFolder {
   /// The same for kSaved, which make no room: refuses when there are saved_count.
   void save(const RecordName& name, std::span<const std::byte> scan, std::string_view json);
   /// Replaces a file that is not counted, as last.json.  Fails: InputError.
-  void put(const std::string& file_name, std::span<const std::byte> bytes);
+  void put(const std::string& file_name, std::span<const std::byte> bytes,
+           NewName name = NewName::kOutlastsPower);
 
   /// The newest record of the master's number, none older than `sequence`.
   [[nodiscard]] std::optional<RecordName> find(std::uint16_t number, std::uint64_t sequence) const;

@@ -1,6 +1,8 @@
 #include "port/linux/records/record_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +13,20 @@
 
 #include "port/linux/files/input_error.hpp"
 #include "tests/port/linux/files/temporary_folder.hpp"
+
+namespace {
+
+/// What was synced, a letter each: a file or a folder.
+std::string synced;
+
+}  // namespace
+
+/// In the place of the C library's.
+extern "C" int fsync(int fd) {
+  struct stat info {};
+  synced += ::fstat(fd, &info) == 0 && S_ISDIR(info.st_mode) ? 'd' : 'f';
+  return static_cast<int>(::syscall(SYS_fsync, fd));
+}
 
 namespace flatpose::port {
 namespace {
@@ -78,6 +94,25 @@ TEST(RecordFolder, KeepsTheLastAndMoreOfTheFailedWithinItsBytes) {
       ASSERT_LE(bytes_in(base.path("r")), limits.bytes_max);
     }
   }
+}
+
+// Two files, then once the folder for both names; what is only a copy goes without.
+TEST(RecordFolder, RecordOutlastsALossOfPowerForThreeSyncs) {
+  const TemporaryFolder base;
+  RecordFolder folder(base.path("r"), {});
+  folder.open();
+  synced.clear();
+  add(folder, Kind::kFound, 100);
+  EXPECT_EQ(synced, "ffd");
+  synced.clear();
+  add(folder, Kind::kFound, 0);  // without a scan
+  EXPECT_EQ(synced, "fd");
+  synced.clear();
+  folder.put("last.json", {}, NewName::kMayBeLost);
+  EXPECT_EQ(synced, "f");
+  synced.clear();
+  folder.put("picks.json", {});
+  EXPECT_EQ(synced, "fd");
 }
 
 TEST(RecordFolder, LeavesStrangersAlone) {
