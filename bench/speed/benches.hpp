@@ -13,5 +13,7 @@ void register_search_benches(const BenchOptions& options);
 void register_image_benches(const BenchOptions& options);
 void register_cycle_benches(const BenchOptions& options);
 void register_growth_benches(const BenchOptions& options);
+/// By `flatpose_speed --benchmark_filter=^bounds/` alone: no table tells of it.
+void register_bounds_benches(const BenchOptions& options);
 
 }  // namespace flatpose::bench

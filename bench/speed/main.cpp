@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
     flatpose::bench::register_image_benches(options);
     flatpose::bench::register_cycle_benches(options);
     flatpose::bench::register_growth_benches(options);
+    flatpose::bench::register_bounds_benches(options);
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "flatpose_speed: %s\n", error.what());
