@@ -25,7 +25,17 @@ bool has_kernel_can() {
   return socket.is_open() || (errno != EAFNOSUPPORT && errno != EPROTONOSUPPORT);
 }
 
-void look_at_link(const std::string& name, CanInterface& found) {
+std::string kilobits(std::uint32_t bit_rate_per_s) {
+  return std::to_string(bit_rate_per_s / kPerKilo) + " kbit/s";
+}
+
+}  // namespace
+
+CanInterface look_at_can_link(const std::string& name) {
+  CanInterface found;
+  if (name.size() >= IFNAMSIZ) return found;
+  found.index = static_cast<int>(if_nametoindex(name.c_str()));
+  if (found.index == 0) return found;
   const FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq request{};
   name.copy(request.ifr_name, IFNAMSIZ - 1);
@@ -33,21 +43,13 @@ void look_at_link(const std::string& name, CanInterface& found) {
       ioctl(socket.get(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
   found.carries_fd =
       ioctl(socket.get(), SIOCGIFMTU, &request) == 0 && request.ifr_mtu >= int{CANFD_MTU};
+  return found;
 }
-
-std::string kilobits(std::uint32_t bit_rate_per_s) {
-  return std::to_string(bit_rate_per_s / kPerKilo) + " kbit/s";
-}
-
-}  // namespace
 
 CanInterface look_at_can(const std::string& name) {
-  CanInterface found;
-  found.has_kernel_can = has_kernel_can();
-  if (!found.has_kernel_can || name.size() >= IFNAMSIZ) return found;
-  found.index = static_cast<int>(if_nametoindex(name.c_str()));
+  if (!has_kernel_can()) return {.has_kernel_can = false};
+  CanInterface found = look_at_can_link(name);
   if (found.index == 0) return found;
-  look_at_link(name, found);
   int state = CAN_STATE_ERROR_ACTIVE;
   found.is_virtual = can_get_state(name.c_str(), &state) != 0;
   found.is_bus_off = !found.is_virtual && state == CAN_STATE_BUS_OFF;

@@ -21,6 +21,10 @@ struct CanInterface {
 
 [[nodiscard]] CanInterface look_at_can(const std::string& name);
 
+/// Index, up or not, and FD or not alone.  Cost: system calls that wait for nobody, while the
+/// driver is asked for the rest under a lock of the kernel that others may hold for long.
+[[nodiscard]] CanInterface look_at_can_link(const std::string& name);
+
 /// "can0 at 250 kbit/s", "vcan0", "can0, which is down"
 [[nodiscard]] std::string to_text(const std::string& name, const CanInterface& interface);
 

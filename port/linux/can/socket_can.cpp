@@ -24,7 +24,7 @@ namespace flatpose::port {
 namespace {
 
 using can::BusState;
-/// Frames passed over in one call at most: error frames that change nothing.
+/// Frames passed over in one call at most: error frames that change nothing, or what is dropped.
 constexpr int kPassedOverMax = 64;
 /// Two clocks read one after the other belong together when no more than this passed meanwhile.
 constexpr std::int64_t kReading_us = 100;
@@ -146,22 +146,30 @@ can::Link::Received SocketCan::state(BusState state) noexcept {
   Received told;
   told.kind = Received::Kind::kBus;
   told.bus = {state, std::exchange(has_lost_frames_, false), carries_fd_};
-  told.received_us = clock_.now_us();
+  told.received_us = arrived_us_;
   return told;
 }
 
+// What the socket still has to say of before: frames that nobody waits for any more, which would be
+// taken for new ones, and an error. While there is some, who waits at the socket does not sleep.
+// Returns whether that was all.
+bool SocketCan::drop_unread() noexcept {
+  char first = 0;
+  for (int i = 0; i < kPassedOverMax; ++i) {
+    if (recv(socket_.get(), &first, sizeof first, 0) < 0 && errno == EAGAIN) return true;
+  }
+  return false;
+}
+
 // An interface that went away with its adapter has taken the filters with it, and has another
-// number when it is back. What the socket still has to say of before is dropped.
+// number when it is back.
 bool SocketCan::bind_again() noexcept {
-  const CanInterface found = look_at_can(interface_);
+  const CanInterface found = look_at_can_link(interface_);
   const bool is_bound = found.index != 0 && found.is_up &&
                         set_filters(socket_.get(), node_, found.carries_fd) &&
                         bind_to(socket_.get(), found.index);
   if (!is_bound) return false;
   carries_fd_ = found.carries_fd;
-  int error = 0;
-  socklen_t size = sizeof error;
-  (void)getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
   return true;
 }
 
@@ -201,7 +209,7 @@ void SocketCan::look_at_clocks() noexcept {
 can::Link::Received SocketCan::receive() noexcept {
   if (!is_told_) return state(state_);
   if (is_down_) {
-    if (!bind_again()) return {};
+    if (!drop_unread() || !bind_again()) return {};
     is_down_ = false;
     return state(BusState::kActive);
   }
@@ -224,11 +232,12 @@ can::Link::Received SocketCan::receive() noexcept {
     const Beside found = beside(message, drop_count_);
     if (found.drops != std::exchange(drop_count_, found.drops)) has_lost_frames_ = true;
     look_at_clocks();
+    arrived_us_ = arrival_.arrived_us(found.stamps);
     const bool is_fd = size == CANFD_MTU;
     if (!is_fd && size != CAN_MTU) continue;
     if ((raw.can_id & CAN_ERR_FLAG) == 0) {
       if (has_lost_frames_) is_told_ = false;  // with the next call
-      return {Received::Kind::kFrame, frame_of(raw, is_fd), {}, arrival_.arrived_us(found.stamps)};
+      return {Received::Kind::kFrame, frame_of(raw, is_fd), {}, arrived_us_};
     }
     if (take_error_frame(raw.can_id, raw.data[1])) return state(state_);
   }

@@ -33,6 +33,7 @@ class SocketCan final : public can::Link {
   [[nodiscard]] bool send(const can::Frame& frame) noexcept override;
 
  private:
+  [[nodiscard]] bool drop_unread() noexcept;
   [[nodiscard]] bool bind_again() noexcept;
   void look_at_clocks() noexcept;
   [[nodiscard]] Received failed(int error) noexcept;
@@ -44,6 +45,7 @@ class SocketCan final : public can::Link {
   FileDescriptor socket_;
   SteadyClock clock_;
   ArrivalClock arrival_;
+  std::int64_t arrived_us_ = 0;  ///< What was read last; what is told of the bus comes with it.
   can::BusState state_ = can::BusState::kActive;
   bool is_down_ = false;  ///< The interface, or it is gone: `state_` is kOff.
   bool carries_fd_ = false;

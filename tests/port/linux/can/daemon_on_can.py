@@ -4,6 +4,7 @@ cansend and candump, and a small CANopen client on python-can, are the masters.
 """
 import json
 import math
+import os
 import pathlib
 import re
 import select
@@ -26,6 +27,7 @@ PATIENCE_S = 20
 EMPTY_SCENE = -2
 ERROR_FLAG = 0x20000000
 BUS_OFF, RESTARTED = ERROR_FLAG | 0x40, ERROR_FLAG | 0x100
+CONTROLLER, RX_PASSIVE = ERROR_FLAG | 0x04, b"\0\x10"
 FD_ON, FD_OFF = 0x40000500 + NODE, 0xC0000500 + NODE
 WHOLE = struct.Struct("<BbBBHH3i4i6HhhI4BHBB")
 WHOLE_NAMES = ("sequence", "status", "bits", "refused", "judged", "done", "x", "y", "z", "r1", "r2", "r3", "r4", "sigma_x",
@@ -577,10 +579,14 @@ class Link(Guest):
         self.master.wait_for(lambda: False, seconds)
         return len(self.master.states) == count
 
-    def inject(self, can_id):
+    def inject(self, can_id, data=b""):
         with socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as line:
             line.bind(("vcan0",))
-            line.send(struct.pack("=IB3x8s", can_id, 8, bytes(8)))
+            line.send(struct.pack("=IB3x8s", can_id, 8, data))
+
+    def cpu_s(self):
+        fields = pathlib.Path(f"/proc/{self.daemon.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def works_again(self, number):
         master = self.master
@@ -603,8 +609,9 @@ class Link(Guest):
         self.inject(RESTARTED)
         self.works_again(5)
 
-    def stall(self, stop_s, beats, step_s=0):
-        """The daemon stands still while heartbeats come, or do not; what it makes of that."""
+    def stall(self, stop_s, beats, step_s=0, among=None):
+        """The daemon stands still while heartbeats come, or do not, and `among` them something else; what it makes of
+        that."""
         def set_clock(by_s):
             time.clock_settime(time.CLOCK_REALTIME, time.time() + by_s)
 
@@ -620,6 +627,9 @@ class Link(Guest):
                 set_clock(step_s)
                 self.addCleanup(set_clock, -step_s)
                 step_s = 0
+            if among and end - time.monotonic() < stop_s / 2:
+                among()
+                among = None
             if beats:
                 master.send(0x700 + MASTER, b"\x05")
             time.sleep(0.05)
@@ -641,6 +651,30 @@ class Link(Guest):
 
     def test_heartbeats_that_did_not_come_while_it_stood_still_are_lost(self):
         self.assertEqual(self.stall(2.0, beats=False), [0x8130])
+
+    def test_what_the_controller_says_among_heartbeats_makes_none_of_them_late(self):
+        self.assertEqual(self.stall(2.0, beats=True, among=lambda: self.inject(CONTROLLER, RX_PASSIVE)), [0x8120])
+        self.master.wait_for(lambda: False, 0.3)
+        self.assertEqual(self.master.emergencies, [0x8120])
+        self.assertEqual(self.master.states[-1], 5, "operational")
+
+    def test_what_was_unread_when_the_interface_went_down_is_done_neither_then_nor_later(self):
+        master = self.master
+        master.start()
+        self.assertEqual(master.trigger(1)["status"], 0)
+        self.daemon.process.send_signal(signal.SIGSTOP)
+        master.network(1)
+        master.command(2)
+        run("ip", "link", "set", "vcan0", "down")
+        self.daemon.process.send_signal(signal.SIGCONT)
+        time.sleep(0.2)
+        before_s = self.cpu_s()
+        time.sleep(1.0)
+        self.assertLess(self.cpu_s() - before_s, 0.3, "nothing makes it turn in circles")
+        run("ip", "link", "set", "vcan0", "up")
+        master.close()
+        master.__init__()
+        self.works_again(3)
 
     def test_an_interface_that_goes_down_is_back_when_it_is_up(self):
         master = self.master
