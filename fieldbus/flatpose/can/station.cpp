@@ -61,21 +61,25 @@ void Station::send(std::int64_t now_us) noexcept {
       is_blocked_ = false;
       return;
     }
-    if (!link_.send(waiting_)) return found_no_room();
+    if (!link_.send(waiting_)) return found_no_room(now_us);
     has_waiting_ = is_blocked_ = false;
-    retry_us_ = kRetry_us;
   }
   has_more_ = true;
 }
 
-// An FD frame tells its age: it does not wait, but is made anew.
-void Station::found_no_room() noexcept {
-  if (is_blocked_) {
-    retry_us_ = std::min(2 * retry_us_, kRetryMost_us);
-  } else {
+// It may be tried before its time, for whatever else this is called for; only what was tried in
+// vain at its time waits longer the next time. An FD frame tells its age: it does not wait, but is
+// made anew.
+void Station::found_no_room(std::int64_t now_us) noexcept {
+  if (!is_blocked_) {
     ++blocked_count_;
+    is_blocked_ = true;
+    retry_us_ = kRetry_us;
+    retry_at_us_ = now_us + retry_us_;
+  } else if (now_us >= retry_at_us_) {
+    retry_us_ = std::min(2 * retry_us_, kRetryMost_us);
+    retry_at_us_ = now_us + retry_us_;
   }
-  is_blocked_ = true;
   has_waiting_ = !waiting_.is_fd;
   if (waiting_.is_fd) device_.take_back_fd();
 }

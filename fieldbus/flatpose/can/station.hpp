@@ -38,7 +38,7 @@ class Station {
   [[nodiscard]] std::int64_t next_us() const noexcept {
     if (has_more_) return served_us_;
     if (is_off_) return std::max(device_.next_us(), served_us_ + kRetryMost_us);
-    return is_blocked_ ? served_us_ + retry_us_ : device_.next_us();
+    return is_blocked_ ? retry_at_us_ : device_.next_us();
   }
 
   /// Frames that found no room at first.
@@ -47,7 +47,7 @@ class Station {
  private:
   void take_in(const Link::Received& got, std::int64_t now_us, job::Outputs& all) noexcept;
   void send(std::int64_t now_us) noexcept;
-  void found_no_room() noexcept;
+  void found_no_room(std::int64_t now_us) noexcept;
 
   Device& device_;
   Link& link_;
@@ -58,7 +58,8 @@ class Station {
   bool is_off_ = false;
   std::int64_t passed_us_ = 0;  ///< All that came before has been served.
   std::int64_t served_us_ = 0;
-  std::int64_t retry_us_ = kRetry_us;
+  std::int64_t retry_us_ = kRetry_us;  ///< While blocked: how long it waits now,
+  std::int64_t retry_at_us_ = 0;       ///< and until when.
   std::uint32_t blocked_count_ = 0;
 };
 

@@ -241,6 +241,33 @@ TEST(CanStation, AnFdFrameWithoutRoomIsMadeAnewWithItsAgeOfThen) {
   EXPECT_GT(stand.station.next_us(), stand.desk.now_us + kRetryMost_us);
 }
 
+TEST(CanStation, WhatHasNoRoomWaitsNoLongerForBeingTriedInBetween) {
+  for (const bool has_fd : {false, true}) {
+    Stand stand({.heartbeat_ms = 0, .fd_frame = has_fd, .carries_fd = has_fd});
+    stand.desk.pass(10 * kMs);
+    stand.wire.has_room = false;
+    stand.command(1);
+    stand.serve();
+    std::int64_t retry_us = stand.desk.now_us + kRetry_us;
+    for (int i = 1; i < 10; ++i) {
+      for (int k = 0; k < 5; ++k) {
+        stand.heartbeat();
+        stand.serve();
+        stand.station.tell(stand.desk.now_us);
+      }
+      EXPECT_EQ(stand.station.next_us(), retry_us) << i;
+      stand.serve_after(retry_us - 1 - stand.desk.now_us);
+      EXPECT_EQ(stand.station.next_us(), retry_us) << i;
+      stand.serve_after(1);
+      retry_us += std::min<std::int64_t>(kRetryMost_us, kRetry_us << i);
+    }
+    EXPECT_EQ(stand.station.blocked_count(), 1U);
+    stand.wire.has_room = true;
+    stand.serve();
+    EXPECT_GT(stand.station.next_us(), stand.desk.now_us + kRetryMost_us);
+  }
+}
+
 TEST(CanStation, AnFdFrameThatIsTurnedOffWhileItHasNoRoomIsTriedNoMore) {
   Stand stand({.heartbeat_ms = 0, .fd_frame = true, .carries_fd = true});
   stand.wire.has_room = false;
