@@ -3,8 +3,10 @@
 // mailbox. One order is in force at a time; a newer one, also a stop, replaces it, taken or not. An
 // answer bears the ticket of its order: one that comes late is nobody's.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "flatpose/geometry/pose.hpp"
 #include "flatpose/job/command.hpp"
@@ -56,6 +58,12 @@ struct ScanResult {
   int match_count = 0;
   std::array<FoundMatch, kMatchesPerScanMax> matches{};
 };
+
+/// A time as results hold it: the greatest number would say that there is none.
+[[nodiscard]] constexpr std::uint32_t held_time(std::int64_t time) noexcept {
+  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(time, 0, kMost));
+}
 
 /// What the search tells.
 struct SearchEvent {

@@ -8,11 +8,6 @@ namespace {
 
 constexpr std::int64_t kNever_us = std::numeric_limits<std::int64_t>::max();
 
-std::uint32_t held_ms(std::int64_t us) noexcept {
-  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(us / 1000, 0, kMost));
-}
-
 }  // namespace
 
 void ResultBoard::clear() noexcept {
@@ -101,7 +96,7 @@ void ResultBoard::show(std::int64_t now_us, Address reader, Snapshot& snapshot) 
   if (!shows_scan_) return;
   snapshot.has_scan = true;
   snapshot.scan_number = scan_.scan_number;
-  snapshot.age_ms = held_ms(now_us - scan_.acquired_us);
+  snapshot.age_ms = held_time((now_us - scan_.acquired_us) / 1000);
   snapshot.sensor_us = scan_.sensor_us;
   snapshot.cycle_us = scan_.cycle_us;
   snapshot.part_hash = scan_.part_hash;

@@ -13,11 +13,11 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
-#include <ctime>
 #include <system_error>
 #include <utility>
 
 #include "port/linux/can/interface.hpp"
+#include "port/linux/clock/real_clock.hpp"
 #include "port/linux/files/input_error.hpp"
 
 namespace flatpose::port {
@@ -29,16 +29,6 @@ constexpr int kPassedOverMax = 64;
 /// Two clocks read one after the other belong together when no more than this passed meanwhile.
 constexpr std::int64_t kReading_us = 100;
 constexpr int kReadingsMax = 3;
-
-std::int64_t us_of(const timespec& time) noexcept {
-  return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
-}
-
-std::int64_t real_now_us() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return us_of(now);
-}
 
 // Of hardware where there are some; without any a frame counts from when it is read.
 void ask_for_stamps(int socket) noexcept {
@@ -92,7 +82,10 @@ Beside beside(msghdr& message, std::uint32_t drops_before) noexcept {
       continue;
     scm_timestamping stamps;
     std::memcpy(&stamps, CMSG_DATA(part), sizeof stamps);
-    found.stamps = {us_of(stamps.ts[0]), us_of(stamps.ts[2])};
+    const timespec& software = stamps.ts[0];
+    const timespec& hardware = stamps.ts[2];
+    found.stamps = {us_of(software.tv_sec, software.tv_nsec),
+                    us_of(hardware.tv_sec, hardware.tv_nsec)};
   }
   return found;
 }

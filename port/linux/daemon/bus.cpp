@@ -2,11 +2,12 @@
 
 #include <poll.h>
 #include <sys/random.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+
+#include "port/linux/daemon/event_file.hpp"
 
 namespace flatpose::daemon {
 namespace {
@@ -71,8 +72,7 @@ void Bus::start() {
 
 Bus::~Bus() {
   is_over_.store(true);
-  const std::uint64_t once = 1;
-  (void)!::write(engine_.event(), &once, sizeof once);
+  engine_.wake_bus();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -113,10 +113,7 @@ void Bus::wait(std::int64_t time_us) noexcept {
   const std::int64_t left_us = std::max<std::int64_t>(time_us, 0);
   const timespec limit{left_us / 1'000'000, left_us % 1'000'000 * 1000};
   (void)ppoll(watched.data(), watched.size(), &limit, nullptr);
-  if (watched[0].revents != 0) {
-    std::uint64_t times = 0;
-    (void)!::read(engine_.event(), &times, sizeof times);
-  }
+  if (watched[0].revents != 0) clear_event(engine_.event());
   if (watched[1].revents != 0) server_->wait(0);
 }
 

@@ -1,8 +1,6 @@
 #include "port/linux/daemon/driver_source.hpp"
 
 #include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -33,14 +31,11 @@ DriverSource::DriverSource(const Config& config, const ScanBuffers& buffers, Doo
       up_(config.source.up),
       log_(log),
       listener_(config.source.place, config.source.driver),
-      event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      handover_(buffers, taker) {
-  if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
-}
+      handover_(buffers, taker) {}
 
 DriverSource::~DriverSource() {
   is_over_.store(true);
-  ring();
+  event_.ring();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -48,14 +43,9 @@ void DriverSource::start() {
   thread_ = std::thread([this] { work(); });
 }
 
-void DriverSource::ring() const noexcept {
-  const std::uint64_t once = 1;
-  (void)!::write(event_.get(), &once, sizeof once);
-}
-
 void DriverSource::ask() noexcept {
   is_asked_.store(true);
-  ring();
+  event_.ring();
 }
 
 // --- the taker's side
@@ -63,7 +53,7 @@ void DriverSource::ask() noexcept {
 void DriverSource::request(const ScanOrder& order) noexcept {
   wanted_ticket_ = order.ticket;
   requests_.put(order);
-  ring();
+  event_.ring();
 }
 
 const HeldScan* DriverSource::take(std::int64_t) noexcept { return handover_.take(wanted_ticket_); }
@@ -119,8 +109,7 @@ void DriverSource::wait_for_something() noexcept {
     timeout_ms = static_cast<int>(
         std::clamp<std::int64_t>((next - clock_.now_us()) / kUsPerMs + 1, 0, kMost_ms));
   (void)::poll(waited.data(), waited.size(), timeout_ms);
-  std::uint64_t count = 0;
-  (void)!::read(event_.get(), &count, sizeof count);
+  event_.clear();
 }
 
 // A driver that captures may be deaf for as long as it may take.
@@ -209,8 +198,7 @@ void DriverSource::take_scan(const flatpose_camera_done_message& done) {
   scan.name = driver_.name;
   scan.is_simulated = driver_.is_simulated || (done.flags & FLATPOSE_CAMERA_IS_SIMULATED) != 0;
   scan.acquired_us = done.end_us;
-  scan.sensor_us = static_cast<std::uint32_t>(
-      std::min<std::int64_t>(done.end_us - done.start_us, UINT32_MAX - 1));
+  scan.sensor_us = job::held_time(done.end_us - done.start_us);
   is_capturing_ = false;
   handover_.publish(order_.ticket);
 }

@@ -13,6 +13,7 @@
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/daemon/driver_line.hpp"
 #include "port/linux/daemon/driver_listener.hpp"
+#include "port/linux/daemon/event_file.hpp"
 #include "port/linux/daemon/scan_handover.hpp"
 #include "port/linux/daemon/scan_source.hpp"
 
@@ -54,14 +55,13 @@ class DriverSource final : public ScanSource {
   void tell_life() noexcept;
   [[nodiscard]] bool driver_is_fresh() const noexcept;
   [[nodiscard]] std::int64_t next_us() const noexcept;
-  void ring() const noexcept;
 
   const locate::Limits limits_;
   const std::optional<port::Up> up_;
   Log& log_;
   port::SteadyClock clock_;
   DriverListener listener_;
-  port::FileDescriptor event_;
+  EventFile event_;
   ScanHandover handover_;
   Latest<ScanOrder> requests_;
   std::atomic<bool> is_asked_{false};

@@ -42,8 +42,7 @@ double merit(const locate::Match& match, locate::Order order, const Frames& fram
 }
 
 std::uint32_t time_since(std::int64_t start_us, const Host& host) noexcept {
-  const std::int64_t took_us = host.clock.now_us() - start_us;
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, UINT32_MAX - 1));
+  return job::held_time(host.clock.now_us() - start_us);
 }
 
 }  // namespace

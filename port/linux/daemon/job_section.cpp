@@ -29,6 +29,15 @@ const std::vector<std::string> kFrames{"scan", "work", "robot"};
 const std::vector<std::string> kOrders{"score", "height", "visible"};
 const std::vector<std::string> kPoses{"object", "pick"};
 
+// Two numbers, the lesser first; nothing there: as they are.
+void read_range(Section& section, const std::string& key, double& least, double& greatest) {
+  const auto pair = section.numbers(key, -kReachMax_mm, kReachMax_mm, 2);
+  if (pair.empty()) return;
+  if (pair[0] > pair[1]) section.fail(key, "'" + key + "' runs backwards", "give the least first");
+  least = pair[0];
+  greatest = pair[1];
+}
+
 void read_parts_of(Section& section, const Config& config, JobConfig& job) {
   for (const std::string& name : section.texts("parts", kPartsPerJobMax)) {
     const auto found = std::find_if(config.parts.begin(), config.parts.end(),
@@ -66,13 +75,7 @@ void read_search_of(Section& section, JobConfig& job) {
   if (const auto tilt_deg = section.number("max_tilt_deg", 0.0, kTiltMax_deg))
     locate.max_tilt_rad = *tilt_deg * kRadPerDeg;
   locate.order = static_cast<locate::Order>(section.choice("order", kOrders).value_or(0));
-  if (const auto pair = section.numbers("height_mm", -kReachMax_mm, kReachMax_mm, 2);
-      !pair.empty()) {
-    if (pair[0] > pair[1])
-      section.fail("height_mm", "'height_mm' runs backwards", "give the least first");
-    locate.height_min_mm = pair[0];
-    locate.height_max_mm = pair[1];
-  }
+  read_range(section, "height_mm", locate.height_min_mm, locate.height_max_mm);
   for (const std::string& text : section.texts("exclusions", locate::kExclusionCountMax))
     job.exclusions.push_back(
         tool::parse_region(section.place_of("exclusions") + ": exclusions", text));
@@ -81,17 +84,9 @@ void read_search_of(Section& section, JobConfig& job) {
 }
 
 void read_limits(Section& section, PoseLimits& limits) {
-  const auto read = [&](const char* key, double& least, double& greatest) {
-    const auto pair = section.numbers(key, -kReachMax_mm, kReachMax_mm, 2);
-    if (pair.empty()) return;
-    if (pair[0] > pair[1])
-      section.fail(key, std::string("'") + key + "' runs backwards", "give the least first");
-    least = pair[0];
-    greatest = pair[1];
-  };
-  read("limit_x_mm", limits.least_mm.x, limits.greatest_mm.x);
-  read("limit_y_mm", limits.least_mm.y, limits.greatest_mm.y);
-  read("limit_z_mm", limits.least_mm.z, limits.greatest_mm.z);
+  read_range(section, "limit_x_mm", limits.least_mm.x, limits.greatest_mm.x);
+  read_range(section, "limit_y_mm", limits.least_mm.y, limits.greatest_mm.y);
+  read_range(section, "limit_z_mm", limits.least_mm.z, limits.greatest_mm.z);
   if (const auto tilt_deg = section.number("limit_tilt_deg", 0.0, 90.0))
     limits.tilt_rad = *tilt_deg * kRadPerDeg;
 }

@@ -1,8 +1,5 @@
 #include "port/linux/daemon/replay_source.hpp"
 
-#include <algorithm>
-#include <cstring>
-#include <limits>
 #include <utility>
 
 #include "port/linux/files/input_error.hpp"
@@ -12,11 +9,6 @@ namespace {
 
 /// A file that changes as often as this while it is being taken is taken as it is.
 constexpr int kRereadsMax = 3;
-
-std::uint32_t clamped_us(std::int64_t time_us) noexcept {
-  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(time_us, 0, kMost));
-}
 
 }  // namespace
 
@@ -91,10 +83,9 @@ void ReplaySource::read_into(int index) {
   slot.value_count = reader_.read(slot.scan.name, buffer, slot.scan);
   slot.scan.is_simulated = true;
   // The other buffer holds the one before: nobody but this thread writes to it.
-  const std::size_t other = static_cast<std::size_t>(1 - index);
-  slot.scan.is_repeated =
-      slots_[other].value_count == slot.value_count &&
-      std::memcmp(buffers_[other].data(), buffer.data(), slot.value_count * sizeof(float)) == 0;
+  const int other = 1 - index;
+  slot.scan.is_repeated = are_same_bits(buffers_[other].first(slots_[other].value_count),
+                                        buffer.first(slot.value_count));
 }
 
 // --- the taker's side
@@ -130,7 +121,7 @@ const HeldScan* ReplaySource::take(std::int64_t now_us) noexcept {
   bell_.ring();
   slot.scan.number = ++taken_count_;
   slot.scan.acquired_us = now_us;
-  slot.scan.sensor_us = clamped_us(now_us - accepted_us_);
+  slot.scan.sensor_us = job::held_time(now_us - accepted_us_);
   return &slot.scan;
 }
 

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <atomic>
-#include <cstring>
 
 #include "port/linux/daemon/scan_source.hpp"
 
@@ -78,11 +77,5 @@ class ScanHandover {
   bool is_last_sound_ = false;
   std::uint32_t taken_count_ = 0;
 };
-
-/// Whether both are the same bits: NaN, which stands for a missing point, is like itself.
-[[nodiscard]] inline bool are_same_bits(std::span<const float> one,
-                                        std::span<const float> other) noexcept {
-  return one.size() == other.size() && std::memcmp(one.data(), other.data(), one.size_bytes()) == 0;
-}
 
 }  // namespace flatpose::daemon

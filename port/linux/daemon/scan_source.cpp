@@ -1,8 +1,7 @@
 #include "port/linux/daemon/scan_source.hpp"
 
-#include <unistd.h>
-
 #include "port/linux/daemon/driver_source.hpp"
+#include "port/linux/daemon/event_file.hpp"
 #include "port/linux/daemon/replay_source.hpp"
 #include "port/linux/daemon/watch_source.hpp"
 
@@ -20,8 +19,7 @@ bool ScanSource::hear(job::SearchEvent& event) noexcept {
 
 void ScanSource::tell(const SourceLife& life) noexcept {
   life_.put(life);
-  const std::uint64_t once = 1;
-  (void)!::write(wake_, &once, sizeof once);
+  ring_event(wake_);
 }
 
 std::unique_ptr<ScanSource> make_scan_source(const Config& config, const ScanBuffers& buffers,

@@ -1,16 +1,14 @@
 #include "port/linux/daemon/search_engine.hpp"
 
-#include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 
+#include "port/linux/clock/real_clock.hpp"
 #include "port/linux/realtime/thread_setup.hpp"
 
 namespace flatpose::daemon {
@@ -25,16 +23,20 @@ std::span<float> floats(port::PrefaultedMemory& memory) noexcept {
   return {reinterpret_cast<float*>(bytes.data()), bytes.size() / sizeof(float)};
 }
 
+/// What a search has no say in.
+void add_scan(const HeldScan& scan, job::ScanResult& result) noexcept {
+  result.has_scan = true;
+  result.scan_number = scan.number;
+  result.acquired_us = scan.acquired_us;
+  result.sensor_us = scan.sensor_us;
+  result.is_repeated = scan.is_repeated;
+  result.is_simulated = scan.is_simulated;
+}
+
 job::ScanResult result_of(const HeldScan* scan, Answer answer) noexcept {
   job::ScanResult result;
   result.answer = answer;
-  if (scan == nullptr) return result;
-  result.has_scan = true;
-  result.scan_number = scan->number;
-  result.acquired_us = scan->acquired_us;
-  result.sensor_us = scan->sensor_us;
-  result.is_repeated = scan->is_repeated;
-  result.is_simulated = scan->is_simulated;
+  if (scan != nullptr) add_scan(*scan, result);
   return result;
 }
 
@@ -46,10 +48,8 @@ SearchEngine::SearchEngine(const Config& config, std::shared_ptr<const JobSet> j
       arena_(search_arena_bytes(config.search.limits)),
       buffers_{port::PrefaultedMemory(scan_buffer_bytes(config.search.limits)),
                port::PrefaultedMemory(scan_buffer_bytes(config.search.limits))},
-      event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
       shelf_(std::move(jobs)),
       search_(shelf_.use(0), locator_) {
-  if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
   const Status status = locator_.init(config.search.limits, arena_.span());
   if (status != Status::kOk)
     throw std::runtime_error(std::string("the limits of [search]: ") + to_string(status));
@@ -87,8 +87,8 @@ std::uint32_t SearchEngine::ask() noexcept {
 }
 
 void SearchEngine::give(const job::Order& order) noexcept {
-  in_force_.store(
-      order.ticket);  // first: a search that finds it not yet in force would end at once
+  // First: a search that finds it not yet in force would end at once.
+  in_force_.store(order.ticket);
   orders_.put({order, shelf_.generation()});
   bell_.ring();
 }
@@ -167,14 +167,8 @@ void SearchEngine::locate(const job::Order& order, const HeldScan* scan,
     return keep(order, result_of(nullptr, Answer::kNoScan), nullptr, false);
   }
   times_ = {.begun_us = clock_.now_us()};
-  const job::ScanResult found = search_.run(order, *scan, {clock_, *workers_, &replaced});
-  job::ScanResult result = result_of(scan, found.answer);
-  result.frame = found.frame;
-  result.cycle_us = found.cycle_us;
-  result.part_hash = found.part_hash;
-  result.alignment_hash = found.alignment_hash;
-  result.match_count = found.match_count;
-  result.matches = found.matches;
+  job::ScanResult result = search_.run(order, *scan, {clock_, *workers_, &replaced});
+  add_scan(*scan, result);
   times_.ended_us = clock_.now_us();
   finish(order, result);
   keep(order, result, scan, true);
@@ -186,12 +180,9 @@ void SearchEngine::verify(const job::Order& order, const Cancel& replaced) noexc
   const HeldScan* const scan = next_scan(order, replaced);
   if (scan == nullptr) return finish(order, Answer::kNoScan);
   std::string told;
-  const job::ScanResult found =
+  job::ScanResult result =
       search_.verify(order, *scan, Arena(arena_.span()), {clock_, *workers_, &replaced}, told);
-  job::ScanResult result = result_of(scan, found.answer);
-  result.frame = found.frame;
-  result.cycle_us = found.cycle_us;
-  result.alignment_hash = found.alignment_hash;
+  add_scan(*scan, result);
   finish(order, result);
   keep(order, result, scan, false);
   if (!told.empty()) note("command " + std::to_string(order.number) + ": " + told);
@@ -265,9 +256,7 @@ void SearchEngine::keep(const job::Order& order, const job::ScanResult& result,
 
 void SearchEngine::fill(port::Record& record, const job::Order& order, const HeldScan* scan) {
   record.order = order;
-  record.since_1970_us = std::chrono::duration_cast<std::chrono::microseconds>(
-                             std::chrono::system_clock::now().time_since_epoch())
-                             .count();
+  record.since_1970_us = port::real_now_us();
   record.arena_bytes = arena_.span().size();
   tool::LoadedScan& loaded = record.loaded;
   loaded.scan.width_px = loaded.scan.height_px = 0;
@@ -312,9 +301,7 @@ Answer SearchEngine::save_scan(const job::Order& order, const Cancel& replaced) 
 }
 
 void SearchEngine::report_pick(const job::Order& order) noexcept {
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  const port::Pick pick{order.pick_number, order.pick_outcome,
-                        std::chrono::duration_cast<std::chrono::microseconds>(since_1970).count()};
+  const port::Pick pick{order.pick_number, order.pick_outcome, port::real_now_us()};
   if (recorder_ && recorder_->report(pick)) return;
   note("pick of command " + std::to_string(order.pick_number) + ": outcome " +
        std::to_string(order.pick_outcome));
@@ -334,11 +321,6 @@ void SearchEngine::say_for_certain() noexcept {
   constexpr std::chrono::milliseconds kPause(1);
   while (!events_.put(said_) && !is_over_.load()) std::this_thread::sleep_for(kPause);
   wake_bus();
-}
-
-void SearchEngine::wake_bus() const noexcept {
-  const std::uint64_t once = 1;
-  (void)!::write(event_.get(), &once, sizeof once);
 }
 
 void SearchEngine::note(const std::string& text) noexcept {

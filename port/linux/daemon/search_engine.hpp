@@ -2,8 +2,7 @@
 // The search's own thread, its workers and all memory of a search, taken and set up at the start.
 // Whoever serves a bus never waits for it: orders go in and events come out through mailboxes.
 //
-//   bus thread:  give(order) --Latest-->  search thread  --Queue, eventfd-->  take(event) : bus
-//   thread
+//   bus:  give(order) --Latest-->  search thread  --Queue, eventfd-->  bus:  take(event)
 //
 // One order is in force. A newer one, also a stop, ends a search of the older within a fraction of
 // a millisecond, because the search asks for the ticket in force again and again.
@@ -20,6 +19,7 @@
 #include "flatpose/locate/locator.hpp"
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/daemon/config.hpp"
+#include "port/linux/daemon/event_file.hpp"
 #include "port/linux/daemon/job_search.hpp"
 #include "port/linux/daemon/job_set.hpp"
 #include "port/linux/daemon/job_shelf.hpp"
@@ -28,7 +28,6 @@
 #include "port/linux/daemon/recorder.hpp"
 #include "port/linux/daemon/scan_buffer.hpp"
 #include "port/linux/daemon/scan_source.hpp"
-#include "port/linux/modbus/file_descriptor.hpp"
 #include "port/linux/realtime/memory.hpp"
 #include "port/linux/realtime/step.hpp"
 #include "port/linux/threads/worker_pool.hpp"
@@ -82,7 +81,7 @@ class SearchEngine {
   /// Any thread: the search looks whether there is something new.
   void ring() noexcept { bell_.ring(); }
   /// Any thread.
-  void wake_bus() const noexcept;
+  void wake_bus() const noexcept { event_.ring(); }
   /// An eventfd that is readable when there is something to take.
   [[nodiscard]] int event() const noexcept { return event_.get(); }
 
@@ -126,7 +125,7 @@ class SearchEngine {
   port::SteadyClock clock_;
   port::PrefaultedMemory arena_;
   std::array<port::PrefaultedMemory, kScanBufferCount> buffers_;
-  port::FileDescriptor event_;
+  EventFile event_;
   locate::Locator locator_;
   JobShelf shelf_;
   JobSearch search_;

@@ -3,19 +3,15 @@
 #include <fcntl.h>
 #include <linux/magic.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <ctime>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "port/linux/clock/real_clock.hpp"
 #include "port/linux/files/depth_png.hpp"
 #include "port/linux/files/input_error.hpp"
 
@@ -27,18 +23,12 @@ namespace fs = std::filesystem;
 /// Files are dated by a clock that lags by a tick or two.
 constexpr std::int64_t kDatesLag_us = 20'000;
 
-std::int64_t real_now_us() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return now.tv_sec * 1'000'000 + now.tv_nsec / 1000;
-}
-
 /// When the file was born, by the clock that files are dated by; none when it is not known.
 std::optional<std::int64_t> birth_us(const std::string& path) noexcept {
   struct statx found {};
   if (statx(AT_FDCWD, path.c_str(), 0, STATX_BTIME, &found) != 0) return {};
   if ((found.stx_mask & STATX_BTIME) == 0) return {};
-  return found.stx_btime.tv_sec * 1'000'000 + found.stx_btime.tv_nsec / 1000;
+  return port::us_of(found.stx_btime.tv_sec, found.stx_btime.tv_nsec);
 }
 
 bool is_scan_name(const std::string& name) {
@@ -69,14 +59,11 @@ WatchSource::WatchSource(const Config& config, const ScanBuffers& buffers, Doorb
       reader_(config),
       log_(log),
       watch_(config.source.watch),
-      event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
-      handover_(buffers, taker) {
-  if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
-}
+      handover_(buffers, taker) {}
 
 WatchSource::~WatchSource() {
   is_over_.store(true);
-  ring();
+  event_.ring();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -84,14 +71,9 @@ void WatchSource::start() {
   thread_ = std::thread([this] { work(); });
 }
 
-void WatchSource::ring() const noexcept {
-  const std::uint64_t once = 1;
-  (void)!::write(event_.get(), &once, sizeof once);
-}
-
 void WatchSource::ask() noexcept {
   is_asked_.store(true);
-  ring();
+  event_.ring();
 }
 
 // --- the taker's side
@@ -99,9 +81,9 @@ void WatchSource::ask() noexcept {
 void WatchSource::request(const ScanOrder& order) noexcept {
   wanted_ticket_ = order.ticket;
   Wanted wanted{order, watch_.mark(), 0};
-  wanted.accepted_real_us = real_now_us() - (clock_.now_us() - order.accepted_us);
+  wanted.accepted_real_us = port::real_now_us() - (clock_.now_us() - order.accepted_us);
   requests_.put(wanted);
-  ring();
+  event_.ring();
 }
 
 const HeldScan* WatchSource::take(std::int64_t) noexcept { return handover_.take(wanted_ticket_); }
@@ -109,7 +91,7 @@ const HeldScan* WatchSource::take(std::int64_t) noexcept { return handover_.take
 void WatchSource::abandon() noexcept {
   wanted_ticket_ = 0;
   requests_.put({});
-  ring();
+  event_.ring();
 }
 
 // --- the source's thread
@@ -139,8 +121,7 @@ void WatchSource::turn() {
   search_folder();
   std::array<pollfd, 2> waited{{{event_.get(), POLLIN, 0}, {watch_.file(), POLLIN, 0}}};
   (void)::poll(waited.data(), waited.size(), -1);
-  std::uint64_t count = 0;
-  (void)!::read(event_.get(), &count, sizeof count);
+  event_.clear();
 }
 
 void WatchSource::attach() {
@@ -229,8 +210,7 @@ void WatchSource::load(const std::string& name) {
   scan.is_repeated = are_same_bits(blank.xyz_mm.first(blank.value_count), blank.last_xyz_mm);
   // When it was acquired is not known: no later than it began to be written.
   scan.acquired_us = std::max(arrival.began_us, order.accepted_us);
-  scan.sensor_us = static_cast<std::uint32_t>(
-      std::clamp<std::int64_t>(finished_us - order.accepted_us, 0, UINT32_MAX - 1));
+  scan.sensor_us = job::held_time(finished_us - order.accepted_us);
   is_wanted_ = false;
   handover_.publish(order.ticket);
 }

@@ -15,6 +15,7 @@
 
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/daemon/arrivals.hpp"
+#include "port/linux/daemon/event_file.hpp"
 #include "port/linux/daemon/folder_watch.hpp"
 #include "port/linux/daemon/scan_file.hpp"
 #include "port/linux/daemon/scan_handover.hpp"
@@ -53,14 +54,13 @@ class WatchSource final : public ScanSource {
   [[nodiscard]] bool is_too_old(const std::string& name) const;
   void load(const std::string& name);
   void fail(const std::string& why);
-  void ring() const noexcept;
 
   const std::string path_;
   const ScanFileReader reader_;
   Log& log_;
   port::SteadyClock clock_;
   FolderWatch watch_;
-  port::FileDescriptor event_;
+  EventFile event_;
   ScanHandover handover_;
   Latest<Wanted> requests_;
   std::atomic<bool> is_asked_{false};
