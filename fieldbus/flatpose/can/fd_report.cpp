@@ -10,7 +10,7 @@ namespace {
 
 using result_map::Field;
 
-constexpr FdLine kLines[] = {
+constexpr FdLine kFdLines[] = {
     {Field::kPositionX, 4},  {Field::kPositionY, 4},  {Field::kPositionZ, 4},
     {Field::kRotation1, 4},  {Field::kRotation2, 4},  {Field::kRotation3, 4},
     {Field::kRotation4, 4},  {Field::kSigmaX, 2},     {Field::kSigmaY, 2},
@@ -22,7 +22,7 @@ constexpr FdLine kLines[] = {
 
 constexpr std::size_t place_of(Field field) {
   std::size_t at = kClassicBytesMax;
-  for (const FdLine& line : kLines) {
+  for (const FdLine& line : kFdLines) {
     if (line.field == field) return at;
     at += line.bytes;
   }
@@ -59,7 +59,7 @@ std::uint32_t told_of(const FdLine& line, const job::Snapshot& snapshot, bool& f
 bool put_result(const job::Snapshot& snapshot, FdBytes& bytes) noexcept {
   bool fits = true;
   std::size_t at = kClassicBytesMax;
-  for (const FdLine& line : kLines) {
+  for (const FdLine& line : kFdLines) {
     put_number(bytes, at, line.bytes, told_of(line, snapshot, fits));
     at += line.bytes;
   }
@@ -68,7 +68,7 @@ bool put_result(const job::Snapshot& snapshot, FdBytes& bytes) noexcept {
 
 }  // namespace
 
-std::span<const FdLine> fd_lines() noexcept { return kLines; }
+std::span<const FdLine> fd_lines() noexcept { return kFdLines; }
 
 FdBytes fd_bytes(const job::Snapshot& snapshot, const Judgement& judgement) noexcept {
   Report head = head_of(snapshot, judgement);

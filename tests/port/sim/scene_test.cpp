@@ -82,7 +82,7 @@ TEST(Scene, TakesEveryPartAsItsTarget) {
   const std::set<std::string> heaped{"medium", "high", "pile", "absent", "steep", "buried"};
   for (const std::string& part : part_names()) {
     for (const std::string& name : scene_names()) {
-      if (heaped.contains(name)) continue;  // heap_test.cpp
+      if (heaped.contains(name)) continue;  // tests/whole/heap_test.cpp
       const Scene scene = make(name.c_str(), 5, part.c_str());
       EXPECT_EQ(scene.part, part);
       if (name != "empty") {

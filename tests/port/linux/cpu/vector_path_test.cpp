@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/lib/search/vector_paths.hpp"  // how a path is printed: in one way in a program
+
 namespace flatpose::port {
 namespace {
 
