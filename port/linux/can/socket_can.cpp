@@ -172,10 +172,12 @@ can::Link::Received SocketCan::failed(int error) noexcept {
   return state(BusState::kOff);
 }
 
-// Returns whether there is something to tell.
+// Returns whether there is something to tell. Bus-off is over with RESTARTED, or where the adapter
+// restarts by itself with ACTIVE; while it lasts nothing less says anything.
 bool SocketCan::take_error_frame(std::uint32_t classes, std::uint8_t controller) noexcept {
   BusState fresh = state_;
-  if ((classes & CAN_ERR_CRTL) != 0 && state_ != BusState::kOff) {
+  const bool is_active = (controller & CAN_ERR_CRTL_ACTIVE) != 0;
+  if ((classes & CAN_ERR_CRTL) != 0 && (is_active || state_ != BusState::kOff)) {
     constexpr int kPassive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
     constexpr int kBetter = CAN_ERR_CRTL_ACTIVE | CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING;
     if ((controller & kBetter) != 0) fresh = BusState::kActive;
@@ -229,7 +231,10 @@ can::Link::Received SocketCan::receive() noexcept {
     const bool is_fd = size == CANFD_MTU;
     if (!is_fd && size != CAN_MTU) continue;
     if ((raw.can_id & CAN_ERR_FLAG) == 0) {
-      if (has_lost_frames_) is_told_ = false;  // with the next call
+      // Who hears the bus is on it, whatever word of that was lost. Told with the next call.
+      const bool was_off = state_ == BusState::kOff;
+      if (was_off) state_ = BusState::kActive;
+      if (was_off || has_lost_frames_) is_told_ = false;
       return {Received::Kind::kFrame, frame_of(raw, is_fd), {}, arrived_us_};
     }
     if (take_error_frame(raw.can_id, raw.data[1])) return state(state_);

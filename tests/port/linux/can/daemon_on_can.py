@@ -27,7 +27,7 @@ PATIENCE_S = 20
 EMPTY_SCENE = -2
 ERROR_FLAG = 0x20000000
 BUS_OFF, RESTARTED = ERROR_FLAG | 0x40, ERROR_FLAG | 0x100
-CONTROLLER, RX_PASSIVE = ERROR_FLAG | 0x04, b"\0\x10"
+CONTROLLER, RX_PASSIVE, ACTIVE = ERROR_FLAG | 0x04, b"\0\x10", b"\0\x40"
 FD_ON, FD_OFF = 0x40000500 + NODE, 0xC0000500 + NODE
 WHOLE = struct.Struct("<BbBBHH3i4i6HhhI4BHBB")
 WHOLE_NAMES = ("sequence", "status", "bits", "refused", "judged", "done", "x", "y", "z", "r1", "r2", "r3", "r4", "sigma_x",
@@ -608,6 +608,20 @@ class Link(Guest):
         master.states.clear()
         self.inject(RESTARTED)
         self.works_again(5)
+
+    def test_bus_off_is_over_too_when_the_controller_is_active_or_hears_a_frame(self):
+        """Adapters that restart by themselves tell no restart."""
+        master = self.master
+        for number, back in ((6, lambda: self.inject(CONTROLLER, ACTIVE)),
+                             (7, lambda: master.send(0x700 + MASTER, b"\x05"))):
+            master.start()
+            self.inject(BUS_OFF)
+            master.wait_for(lambda: False, 0.2)
+            self.inject(CONTROLLER, RX_PASSIVE)
+            self.assertTrue(self.silent_for(0.3))
+            master.states.clear()
+            back()
+            self.works_again(number)
 
     def stall(self, stop_s, beats, step_s=0, among=None):
         """The daemon stands still while heartbeats come, or do not, and `among` them something else; what it makes of
