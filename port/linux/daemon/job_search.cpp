@@ -47,20 +47,23 @@ std::uint32_t time_since(std::int64_t start_us, const Host& host) noexcept {
 
 }  // namespace
 
-job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
-                               const Host& host) noexcept {
+bool JobSearch::begin(const job::Order& order, const Host& host) noexcept {
   start_us_ = host.clock.now_us();
   result_ = {};
-  result_.answer = Answer::kPending;
-  outside_count_ = 0;
-  trace_.clear();
+  result_.answer = Answer::kBadJob;
   job_ = set_->find(order.job);
-  if (job_ == nullptr) {
-    result_.answer = Answer::kBadJob;
-    return result_;
-  }
+  if (job_ == nullptr) return false;
+  result_.answer = Answer::kPending;
   result_.frame = job_->config.rule.frame;
   result_.alignment_hash = job_->alignment.hash;
+  return true;
+}
+
+job::ScanResult JobSearch::run(const job::Order& order, const HeldScan& scan,
+                               const Host& host) noexcept {
+  trace_.clear();
+  outside_count_ = 0;
+  if (!begin(order, host)) return result_;
   if (!job_->alignment.serves(result_.frame)) {
     result_.answer = Answer::kNoAlignment;
     return result_;
@@ -96,22 +99,14 @@ bool JobSearch::can_verify(const job::Order& order) const noexcept {
 
 job::ScanResult JobSearch::verify(const job::Order& order, const HeldScan& scan, Arena arena,
                                   const Host& host, std::string& told) noexcept {
-  result_ = {};
-  const std::int64_t start_us = host.clock.now_us();
-  const Job* const job = set_->find(order.job);
-  if (job == nullptr) {
-    result_.answer = Answer::kBadJob;
-    return result_;
-  }
-  result_.frame = job->config.rule.frame;
-  result_.alignment_hash = job->alignment.hash;
+  if (!begin(order, host)) return result_;
   const std::int64_t end_us =
-      std::min(order.answer_by_us, start_us + job->config.locate.deadline_us);
-  result_.answer = check_plane(*job, scan, arena, host, end_us, told);
-  result_.cycle_us = time_since(start_us, host);
+      std::min(order.answer_by_us, start_us_ + job_->config.locate.deadline_us);
+  result_.answer = check_plane(*job_, scan, arena, host, end_us, told);
+  result_.cycle_us = time_since(start_us_, host);
   if (result_.answer != Answer::kOk && result_.answer != Answer::kAlignmentMoved) return result_;
   for (const Job& other : set_->jobs) {
-    if (other.alignment.work_file == job->alignment.work_file)
+    if (other.alignment.work_file == job_->alignment.work_file)
       has_moved_[place_of(other)] = result_.answer == Answer::kAlignmentMoved;
   }
   return result_;

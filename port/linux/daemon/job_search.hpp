@@ -45,6 +45,8 @@ class JobSearch {
   [[nodiscard]] const port::SearchTrace& trace() const noexcept { return trace_; }
 
  private:
+  /// The result's head, of the order's job. False: there is none, and the result says so.
+  [[nodiscard]] bool begin(const job::Order& order, const Host& host) noexcept;
   void search_part(int part, int index, const job::Order& order, const HeldScan& scan,
                    const Host& host) noexcept;
   void add_matches(const Part& part, int index) noexcept;
