@@ -17,7 +17,7 @@ constexpr std::int64_t kMs = 1000;
 class Wire final : public Link {
  public:
   Received receive() noexcept override {
-    if (inbox.empty()) return {};
+    if (inbox.empty()) return flood;
     const Received first = inbox.front();
     inbox.pop_front();
     return first;
@@ -31,6 +31,7 @@ class Wire final : public Link {
   }
 
   std::deque<Received> inbox;
+  Received flood;  ///< What comes when all else was read.
   std::vector<Frame> sent;
   bool has_room = true;
 };
@@ -172,6 +173,26 @@ TEST(CanArrival, WhileThereIsMoreToReadNoTimePassesBeyondIt) {
   EXPECT_TRUE(stand.is_busy());
   EXPECT_FALSE(stand.has_lost_master());
   EXPECT_EQ(stand.station.next_us(), stand.desk.now_us + 150 * kMs);
+}
+
+TEST(CanArrival, AFloodThatNeverEndsHoldsNoTimeBackAndNoneOfOthers) {
+  Stand stand({.heartbeat_ms = 100, .master_silence_ms = 250});
+  stand.heartbeat();
+  stand.command(1);
+  stand.serve();
+  stand.wire.sent.clear();
+  for (int i = 1; i <= 6; ++i) {
+    ASSERT_EQ(stand.has_lost_master(), i == 6) << i;
+    stand.desk.now_us += 50 * kMs;
+    stand.wire.flood = {
+        Link::Received::Kind::kFrame, frame_of(kHeartbeatBase + 3, {5}), {}, stand.desk.now_us};
+    stand.serve();
+    EXPECT_EQ(stand.station.next_us(), stand.desk.now_us) << "there is more, and others come first";
+  }
+  EXPECT_FALSE(stand.is_busy());
+  int beats = 0;
+  for (const Frame& frame : stand.wire.sent) beats += frame.id == 0x70a ? 1 : 0;
+  EXPECT_EQ(beats, 3);
 }
 
 TEST(CanArrival, WhatIsSentHasTheTimeOfSending) {
