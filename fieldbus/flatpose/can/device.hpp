@@ -21,11 +21,12 @@
 //   heartbeat   our own; and the master's, whose loss cancels what it asked for
 //
 // RPDO1: command_number (2 bytes), command_session (2), command (1), pick_outcome (1), argument
-// (2): the job, or with report_pick the pick_number. A number that is 0 or was seen only shows that
-// the master lives; a refused one never runs later, also when another master holds the lease.
+// (2): the job, or with report_pick the pick_number. A number that is 0 or the master's last only
+// shows that the master lives, and the last may have been refused, also because another master
+// holds the lease. An older number is a command again: count upwards.
 //
 // The master is an owner like any host (job/ownership.hpp), by its node id. Any command, SDO
-// request or heartbeat of its renews the lease.
+// request, NMT command but a reset, or heartbeat of its renews the lease.
 //
 // Thread: the machine's.  Memory: some 4 kB, none of it allocated.
 
@@ -146,7 +147,7 @@ class Device {
   bool has_rpdo_ = false;
 
   Judgement judgement_;
-  std::uint16_t spent_number_ = 0;  ///< Refused before the machine saw it.
+  std::uint16_t spent_number_ = 0;  ///< The last, if refused before the machine saw it.
   Report report_;
   TransmitPdo fd_pdo_;
   FdBytes fd_bytes_{};  ///< While it is on: of the last look, sequence 0.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "flatpose/can/parameters.hpp"
+#include "flatpose/result_map/registers.hpp"
 #include "flatpose/result_map/table.hpp"
 
 namespace flatpose::can {
@@ -70,8 +71,9 @@ constexpr Object kObjects[] = {
     {0x100a, 0, "Manufacturer software version", kVisibleString, kConst, 0},
     {0x1014, 0, "COB-ID EMCY", kUnsigned32, kReadWrite, kEmergencyBase, true},
     {0x1016, 0, kHighest, kUnsigned8, kConst, 1},
-    {0x1016, 1, "The master's heartbeat", kUnsigned32, kReadWrite, 0},
-    {0x1017, 0, "Producer heartbeat time", kUnsigned16, kReadWrite, 1000},
+    {0x1016, 1, "The master's heartbeat", kUnsigned32, kReadWrite,
+     std::uint32_t{Config{}.master} << 16 | Config{}.master_silence_ms},
+    {0x1017, 0, "Producer heartbeat time", kUnsigned16, kReadWrite, Config{}.heartbeat_ms},
     {0x1018, 0, kHighest, kUnsigned8, kConst, 4},
     {0x1018, 1, "Vendor-ID", kUnsigned32, kConst, 0},
     {0x1018, 2, "Product code", kUnsigned32, kConst, kProductCode},
@@ -117,6 +119,10 @@ constexpr DataType type_of(result_map::Type type) noexcept {
 constexpr DataType type_of(const ReportLine& line) noexcept {
   if (line.bytes == 1) return line.is_signed ? kInteger8 : kUnsigned8;
   return line.bytes == 2 ? kUnsigned16 : kInteger24;
+}
+
+constexpr std::uint32_t lowest(std::size_t bytes, std::uint32_t value) noexcept {
+  return value & (0xffffffff >> (32 - 8 * bytes));
 }
 
 Object count_of(std::uint16_t index, std::uint32_t count) noexcept {
@@ -171,7 +177,10 @@ Abort find_report(std::uint8_t subindex, Object& object) noexcept {
   object = count_of(kReportIndex, kReportFieldCount);
   if (subindex == 0) return Abort::kNone;
   const ReportLine& line = report_lines()[subindex - 1U];
-  object = {kReportIndex, subindex, line.name, type_of(line), kReadOnly, 0, false, Mapping::kTpdo};
+  const auto raw = static_cast<std::uint32_t>(report_of({}, {})[line.field]);
+  const std::uint32_t initial = lowest(line.bytes, raw);
+  object = {kReportIndex, subindex, line.name, type_of(line),
+            kReadOnly,    initial,  false,     Mapping::kTpdo};
   return Abort::kNone;
 }
 
@@ -187,7 +196,7 @@ Abort find_register(std::uint16_t index, std::uint8_t subindex, Object& object) 
               entry.name,
               type_of(entry.type),
               is_written ? kReadWrite : kReadOnly,
-              index == kCommandIndex && (subindex == 3 || subindex == 4) ? 1U : 0U};
+              lowest(2U * entry.words(), result_map::raw_of(entry, {}, {}))};
     object.entry = &entry;
     for (const Mapped& mapped : kRpdo) {
       if (mapped.index == index && mapped.subindex == subindex) object.mapping = Mapping::kRpdo;

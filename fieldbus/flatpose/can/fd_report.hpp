@@ -8,7 +8,7 @@
 //   20  rotation_1, rotation_2, rotation_3, rotation_4    4 bytes each, signed
 //   36  sigma_x, sigma_y, sigma_z, sigma_turn_x, .._y, .._z       2 bytes each
 //   48  score, visible                                    2 bytes each, signed
-//   52  age_ms                                            4 bytes: when the frame was made
+//   52  age_ms                                            4 bytes: when the frame was sent
 //   56  part, tool, pick, match_index                     1 byte each
 //   60  session_id                                        2 bytes
 //   62  convention, frame                                 1 byte each

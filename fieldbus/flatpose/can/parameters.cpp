@@ -10,6 +10,11 @@ constexpr bool is_id(std::uint32_t value, std::uint32_t id) noexcept {
   return (value & ~kNotValid) == id;
 }
 
+// The same of a PDO. Many masters know no bit for remote requests: none is answered in any case.
+constexpr bool is_pdo_id(std::uint32_t value, std::uint32_t id) noexcept {
+  return is_id(value & ~kNoRemote, id);
+}
+
 constexpr std::uint32_t id_value(std::uint32_t id, bool is_valid) noexcept {
   return is_valid ? id : id | kNotValid;
 }
@@ -28,7 +33,7 @@ Abort write_tpdo(TpdoSettings& tpdo, std::uint8_t subindex, std::uint32_t id,
                  std::uint32_t value) noexcept {
   switch (subindex) {
     case 1:
-      if (!is_id(value, id | kNoRemote)) return Abort::kValue;
+      if (!is_pdo_id(value, id)) return Abort::kValue;
       tpdo.is_valid = (value & kNotValid) == 0;
       return Abort::kNone;
     case 2:
@@ -47,7 +52,7 @@ Abort write_tpdo(TpdoSettings& tpdo, std::uint8_t subindex, std::uint32_t id,
 Abort write_fd_id(TpdoSettings& fd, std::uint16_t& id, std::uint8_t node,
                   std::uint32_t value) noexcept {
   const std::uint32_t fresh = value & ~(kNotValid | kNoRemote);
-  if ((value & kNoRemote) == 0 || !is_fd_report_id(fresh, node)) return Abort::kValue;
+  if (!is_fd_report_id(fresh, node)) return Abort::kValue;
   const bool is_valid = (value & kNotValid) == 0;
   if (is_valid && fd.is_valid && fresh != id) return Abort::kDeviceState;
   fd.is_valid = is_valid;
@@ -108,7 +113,7 @@ Abort Parameters::write(std::uint16_t index, std::uint8_t subindex, std::uint8_t
     case 0x1017: heartbeat_ms = static_cast<std::uint16_t>(value); return Abort::kNone;
     case 0x1400:
       if (subindex == 1) {
-        if (!is_id(value, kRpdoBase + node)) return Abort::kValue;
+        if (!is_pdo_id(value, kRpdoBase + node)) return Abort::kValue;
         rpdo_is_valid = (value & kNotValid) == 0;
         return Abort::kNone;
       }

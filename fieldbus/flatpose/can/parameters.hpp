@@ -14,7 +14,7 @@ namespace flatpose::can {
 
 inline constexpr std::uint32_t kNotValid = 0x80000000;  ///< Of a PDO's COB-ID, and EMCY's.
 inline constexpr std::uint16_t kFdReportIndex = 0x2006;
-inline constexpr std::uint32_t kNoRemote = 0x40000000;  ///< Remote requests are not answered.
+inline constexpr std::uint32_t kNoRemote = 0x40000000;  ///< Of a PDO's; they never are answered.
 
 struct Parameters {
   bool emergency_is_valid = true;                ///< 1014h

@@ -19,7 +19,7 @@ constexpr double kSharesPerOne = 200.0;
 
 constexpr ReportLine kLines[kReportFieldCount] = {
     {Line::kSequence, "sequence", 1, false, 1, "", 0, 255, ValueSet::kNone,
-     "another with each result; the same in all four frames of one"},
+     "another with each result; of one pose the same in all four frames"},
     {Line::kStatus, "status", 1, true, 1, "", -128, 127, ValueSet::kAnswers, "how it ended"},
     {Line::kBits, "bits", 1, false, 1, "", 0, 255, ValueSet::kBits, "what the machine is at"},
     {Line::kRefusedStatus, "refused_status", 1, false, 1, "", 0, 255, ValueSet::kRefusals,

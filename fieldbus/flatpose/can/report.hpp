@@ -10,8 +10,9 @@
 //   TPDO3  sequence  position_z             rotation_1             part
 //   TPDO4  sequence  rotation_2             rotation_3             tool
 //
-// A pose is to be taken when all four show one sequence number. It changes with the result, and so
-// does what TPDO2 to TPDO4 hold.
+// The sequence changes with the result. TPDO2 to TPDO4 are told when a pose comes or is taken back:
+// a result that has none after one that had none is TPDO1 alone. So a reader waits for its
+// done_number, and only if VALID is set, until the other three show the same sequence.
 
 #include <array>
 #include <cstdint>

@@ -3,11 +3,12 @@
 // late, or of another's doing. No socket, no clock, no thread: time and inputs come in, an order
 // for the search and the time of the next call go out.
 //
-//   - A command_number that is not 0 and not the master's last is seen: accepted or refused, then
-//     and there, and used up either way. Both drop VALID and clear the result.
+//   - A command_number that is not 0 and not the master's last is accepted or refused, then and
+//     there, and used up either way. Both drop VALID and clear the result.
 //   - An accepted number ends as done, exactly once: by the search, by cancel, by the end of the
 //     owner's lease, or because answer_by passed.
-//   - Numbers are remembered for each master, so none is executed twice, whoever wrote between.
+//   - Each master's last number is remembered: written again it does nothing, whoever wrote
+//     between. One before it is a new command again, so masters count upwards.
 //
 //                write, new number                 +--------------------------------------+
 //     IDLE ------------------------------> judged -+ refused: refused_number, ERROR       |

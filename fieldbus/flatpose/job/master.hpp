@@ -1,7 +1,7 @@
 #pragma once
 // Who speaks: a master is an address, not a socket. What must outlive its connections is written
-// down here: the last number seen, so that none is executed twice, and the connection that wrote
-// last, so that what still lies in an older one's buffer cannot come after.
+// down here: the last number, so that it is not executed again when it is written again, and the
+// connection that wrote last, so that what still lies in an older one's buffer cannot come after.
 
 #include <array>
 #include <cstdint>

@@ -4,12 +4,16 @@
 
 #include <string>
 
+#include "port/linux/tool/served_map.hpp"
+
 namespace flatpose::tool {
 
 /// An electronic data sheet (CiA 306), for whatever node id.
-[[nodiscard]] std::string map_eds();
+/// Fails: port::InputError for a config, of which nothing can stand in it.
+[[nodiscard]] std::string map_eds(const ServedMap& served = {});
 
-/// The frames of one node for tools that know no CANopen.  `fd_frame_id` 0: the usual.
-[[nodiscard]] std::string map_dbc(int node, int fd_frame_id = 0);
+/// The frames of one node for tools that know no CANopen.  Rotations are as the jobs have them, if
+/// all have the same.
+[[nodiscard]] std::string map_dbc(const ServedMap& served = {});
 
 }  // namespace flatpose::tool

@@ -24,8 +24,8 @@ constexpr Format kFormats[] = {
     {"c", map_c_header},
     {"st", [](const ServedMap& s) { return map_function_block(PlcDialect::kCodesys, s); }},
     {"scl", [](const ServedMap& s) { return map_function_block(PlcDialect::kScl, s); }},
-    {"eds", [](const ServedMap&) { return map_eds(); }},
-    {"dbc", [](const ServedMap& s) { return map_dbc(s.node, s.fd_frame_id); }},
+    {"eds", map_eds},
+    {"dbc", map_dbc},
 };
 
 const Format& format_named(const std::string& name) {

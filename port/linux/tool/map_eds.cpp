@@ -2,8 +2,10 @@
 
 #include <vector>
 
+#include "flatpose/can/config.hpp"
 #include "flatpose/can/dictionary.hpp"
 #include "flatpose/result_map/table.hpp"
+#include "port/linux/files/input_error.hpp"
 #include "port/linux/tool/map_can.hpp"
 #include "port/linux/tool/number_text.hpp"
 
@@ -30,8 +32,18 @@ const char* access_of(const Object& object) {
   return object.mapping == can::Mapping::kRpdo ? "rww" : "rw";
 }
 
+const char* text_of(const Object& object) {
+  const can::Config config;
+  switch (object.index) {
+    case 0x1008: return config.name;
+    case 0x1009: return config.hardware;
+    case 0x100a: return FLATPOSE_VERSION;
+    default: return "";
+  }
+}
+
 std::string default_of(const Object& object) {
-  if (can::bytes_of(object.type) == 0) return object.index == 0x1008 ? "flatpose" : "";
+  if (can::bytes_of(object.type) == 0) return text_of(object);
   return (object.adds_node ? "$NODEID+" : "") + formatted("0x%X", object.initial);
 }
 
@@ -106,7 +118,10 @@ std::string head() {
 
 }  // namespace
 
-std::string map_eds() {
+std::string map_eds(const ServedMap& served) {
+  if (!served.config_path.empty())
+    throw port::InputError("--config", "an EDS holds for every node and every config",
+                           "leave it out: what the config sets differs from the EDS's defaults");
   return head() + list("MandatoryObjects", is_mandatory) + list("OptionalObjects", is_optional) +
          list("ManufacturerObjects", is_ours);
 }

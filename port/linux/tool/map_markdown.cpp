@@ -32,8 +32,9 @@ constexpr const char* kSteps =
    `refused_number` is your number, `refused_status` says why. `answer_by_ms` is for your watchdog.
 4. `status` >= 0 and the bit `valid`: there is a pose. Anything else: there is none, and its registers say so.
 
-A number is executed once, however often it is written: write it again when you cannot know whether it arrived. A refused
-number is used up. A write answered by exception 6 was not applied at all: another master holds the lease, or a newer
+Your last number is executed once, however often it is written: write it again when you cannot know whether it arrived. A
+refused number is used up, and takes the last result away too. Count upwards, from 65535 to 1: only the last is
+remembered, and one before it is a new command. A write answered by exception 6 was not applied at all: another master holds the lease, or a newer
 connection of yours has written since this one was last heard (send it again). The lease ends 5 s after the owner's last
 request, of any kind, on whatever connection; a command that runs then ends as `cancelled`.
 
@@ -45,20 +46,25 @@ read by functions 3 and 4 alike; every address below is that of the PDU, then as
 function 4. The bits are discrete inputs too, and with handshake = "bits" the control bits are coils, both from 0.
 Function 17 and 43/14 say who answers.
 
+On CAN the same is read and written as `object`, index:subindex, both hexadecimal; low byte first, whatever `word_order`.
+
 )";
 
 void add_row(const Entry& entry, std::string& text) {
   const std::string scale = entry.scale == 1.0 ? "" : formatted("%g", entry.scale);
   const std::string unit = entry.unit;
   const std::string measure = scale.empty() || unit.empty() ? scale + unit : scale + " " + unit;
-  text += formatted("| %d | %d | %d | `%s` | %s | %s | %s |\n", entry.address,
-                    400001 + entry.address, 300001 + entry.address, entry.name, name_of(entry.type),
-                    measure.c_str(), entry.doc);
+  text +=
+      formatted("| %d | %d | %d | %04X:%02X | `%s` | %s | %s | %s |\n", entry.address,
+                400001 + entry.address, 300001 + entry.address, entry.can_index, entry.can_subindex,
+                entry.name, name_of(entry.type), measure.c_str(), entry.doc);
 }
 
 void add_head(const char* title, std::string& text) {
   text += formatted(
-      "## %s\n| PDU | 4x | 3x | name | type | scale | |\n|---|---|---|---|---|---|---|\n", title);
+      "## %s\n| PDU | 4x | 3x | object | name | type | scale | "
+      "|\n|---|---|---|---|---|---|---|---|\n",
+      title);
 }
 
 template <class Belongs>
@@ -119,7 +125,9 @@ std::string map_markdown(const ServedMap& served) {
   text += formatted(
       "Blocks from %d follow every %d registers; one is whole when number and tail are yours. "
       "Those "
-      "from %d (%d registers\neach) say how the same matches are to be picked.\n\n",
+      "from %d (%d registers\neach) say how the same matches are to be picked. On CAN the blocks "
+      "are "
+      "2020 to 2027, with both.\n\n",
       result_map::kFurtherAddress, result_map::kFurtherWords, result_map::kFurtherPickAddress,
       result_map::kFurtherPickWords);
   add_values("`status`: cause; remedy", ValueSet::kAnswers, text);

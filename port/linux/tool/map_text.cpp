@@ -35,8 +35,13 @@ std::vector<NamedValue> named_values(const Entry& entry, const ServedMap& served
 }
 
 double scale_of(const Entry& entry, const ServedMap& served) {
-  const auto shared = rotation_scale_of(served);
-  return shared && has_scale_by_convention(entry) ? *shared : entry.scale;
+  const auto shared = rotation_measure_of(served);
+  return shared && has_scale_by_convention(entry) ? shared->scale : entry.scale;
+}
+
+const char* unit_of(const Entry& entry, const ServedMap& served) {
+  const auto shared = rotation_measure_of(served);
+  return shared && result_map::is_rotation(entry.field) ? shared->unit : entry.unit;
 }
 
 // How the config has 32-bit values written.
@@ -60,7 +65,7 @@ Json json_of(const Entry& entry, const ServedMap& served) {
   json["words"] = entry.words();
   json["type"] = name_of(entry.type);
   json["scale"] = scale_of(entry, served);
-  json["unit"] = entry.unit;
+  json["unit"] = unit_of(entry, served);
   json["values"] = nullptr;
   for (const NamedValue& named : named_values(entry, served))
     json["values"][std::to_string(named.value)] = named.name;
@@ -113,9 +118,9 @@ std::string map_csv(const ServedMap& served) {
     std::string values;
     for (const NamedValue& named : named_values(entry, served))
       values += (values.empty() ? "" : " ") + std::to_string(named.value) + "=" + named.name;
-    text += formatted("%s,%s,%d,%d,%s,%g,%s,%s,0x%04X,%d,%s\n", name_of(entry).c_str(),
+    text += formatted("%s,%s,%d,%d,%s,%g,%s,%s,0x%04X,0x%02X,%s\n", name_of(entry).c_str(),
                       table_of(entry), entry.address, entry.words(), name_of(entry.type),
-                      scale_of(entry, served), entry.unit, csv_field(values).c_str(),
+                      scale_of(entry, served), unit_of(entry, served), csv_field(values).c_str(),
                       entry.can_index, entry.can_subindex, csv_field(entry.doc).c_str());
   }
   return text;

@@ -15,12 +15,18 @@ const char* name_of(result_map::WordOrder order) {
   return "";
 }
 
-std::optional<double> rotation_scale_of(const ServedMap& served) {
-  std::optional<double> shared;
+RotationMeasure rotation_measure(Convention convention) {
+  const char* unit = is_euler(convention) ? "deg" : "";
+  if (convention == Convention::kUrRotationVector) unit = "rad";
+  return {result_map::rotation_scale(convention), unit};
+}
+
+std::optional<RotationMeasure> rotation_measure_of(const ServedMap& served) {
+  std::optional<RotationMeasure> shared;
   for (const ServedJob& job : served.jobs) {
-    const double scale = result_map::rotation_scale(job.convention);
-    if (shared && *shared != scale) return {};
-    shared = scale;
+    const RotationMeasure measure = rotation_measure(job.convention);
+    if (shared && !(*shared == measure)) return {};
+    shared = measure;
   }
   return shared;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flatpose/can/config.hpp"
@@ -37,8 +38,18 @@ using ReadServedMap = std::function<ServedMap(const std::string& config_path)>;
 /// "ABCD"
 [[nodiscard]] const char* name_of(result_map::WordOrder order);
 
-/// The scale of an int32 rotation that all jobs share; none: jobs differ, or there are none.
-[[nodiscard]] std::optional<double> rotation_scale_of(const ServedMap& served);
+/// What an int32 rotation is worth.
+struct RotationMeasure {
+  double scale = 0.001;
+  const char* unit = "deg";
+  friend bool operator==(const RotationMeasure& a, const RotationMeasure& b) {
+    return a.scale == b.scale && std::string_view(a.unit) == b.unit;
+  }
+};
+[[nodiscard]] RotationMeasure rotation_measure(Convention convention);
+
+/// The one that all jobs share; none: jobs differ, or there are none.
+[[nodiscard]] std::optional<RotationMeasure> rotation_measure_of(const ServedMap& served);
 
 /// "pad; frame scan, kuka_abc"
 [[nodiscard]] std::string text_of(const ServedJob& job);

@@ -122,6 +122,7 @@ TEST(CanTrigger, OfAnAnswerWithoutPoseTellsTheStatusAlone) {
   node.start();
   node.rpdo(1);
   node.pass(10 * kMs);
+  const std::int32_t sequence = node.told(Field::kSequence);
   node.sent.clear();
   job::ScanResult nothing = node.desk.found(0);
   nothing.answer = job::Answer::kNoMatch;
@@ -129,6 +130,7 @@ TEST(CanTrigger, OfAnAnswerWithoutPoseTellsTheStatusAlone) {
   node.pass(10 * kMs);
   EXPECT_EQ(node.told(Field::kStatus), -1);
   EXPECT_EQ(node.tpdo(1).size, 0);
+  EXPECT_NE(node.told(Field::kSequence), sequence);
 }
 
 TEST(CanTrigger, IsRefusedWithItsReasonAndConsumed) {
@@ -154,6 +156,41 @@ TEST(CanTrigger, IsRefusedWithItsReasonAndConsumed) {
   node.pass(2 * kMs);
   EXPECT_EQ(node.told(Field::kRefusedStatus), 0);
   EXPECT_EQ(node.desk.order.number, 7);
+}
+
+// The last number alone is remembered: docs/can.md tells masters to count upwards.
+TEST(CanTrigger, ByANumberBeforeTheLastIsANewOne) {
+  Node node;
+  node.desk.live();
+  node.start();
+  std::uint32_t ticket = 0;
+  for (const int n : {1, 2, 1}) {
+    const auto number = static_cast<std::uint16_t>(n);
+    node.rpdo(number);
+    EXPECT_EQ(node.desk.order.number, number);
+    EXPECT_NE(node.desk.order.ticket, ticket);
+    ticket = node.desk.order.ticket;
+    node.desk.finish(node.desk.found());
+    node.pass(10 * kMs);
+    node.rpdo(number);
+    EXPECT_EQ(node.desk.order.ticket, ticket);
+  }
+}
+
+TEST(CanTrigger, RefusedTakesTheLastPoseAway) {
+  Node node;
+  node.desk.live();
+  node.start();
+  node.rpdo(1);
+  node.desk.finish(node.desk.found());
+  node.pass(10 * kMs);
+  EXPECT_NE(node.told(Field::kPositionX), kNoneInt24);
+  node.rpdo(2, 1, 55);
+  node.pass(10 * kMs);
+  EXPECT_EQ(node.told(Field::kRefusedStatus), static_cast<int>(job::Refusal::kBadJob));
+  EXPECT_EQ(node.told(Field::kDoneNumber), 0);
+  EXPECT_EQ(node.told(Field::kPositionX), kNoneInt24);
+  EXPECT_TRUE(node.sequences_agree());
 }
 
 TEST(CanTrigger, OfAPickReportBearsNumberAndOutcome) {
@@ -293,6 +330,49 @@ TEST(CanReset, OfTheNodeCancelsWhatTheMasterAskedForAndForgetsSettings) {
     node.start();
     node.rpdo(1, 1, 7);  // the PLC's outputs as they were: not again
     EXPECT_EQ(node.desk.see(kMaster).last_number, 1);
+  }
+}
+
+TEST(CanReset, KeepsSessionAndLastNumber) {
+  for (const NetworkCommand reset :
+       {NetworkCommand::kResetNode, NetworkCommand::kResetCommunication}) {
+    Node node;
+    node.desk.live();
+    node.start();
+    node.rpdo(1, 1, 7);
+    const std::uint32_t ticket = node.desk.order.ticket;
+    node.network(reset);
+    EXPECT_EQ(node.read(0x2010, 10), 1U);
+    EXPECT_EQ(node.read(0x2010, 11), 321U);
+    node.start();
+    if (reset == NetworkCommand::kResetNode) {
+      EXPECT_EQ(node.told(Field::kStatus), static_cast<int>(job::Answer::kCancelled));
+      EXPECT_EQ(node.told(Field::kDoneNumber), 1);
+      continue;
+    }
+    EXPECT_EQ(node.desk.order.ticket, ticket);
+    node.desk.finish(node.desk.found(1, job::FrameName::kRobot));
+    node.pass(10 * kMs);
+    EXPECT_EQ(node.told(Field::kDoneNumber), 1);
+  }
+}
+
+TEST(CanNetwork, StoppedInMidCommandTellsTheResultAtTheNextStart) {
+  for (const NetworkCommand command : {NetworkCommand::kStop, NetworkCommand::kEnterPreOperational,
+                                       NetworkCommand::kResetCommunication}) {
+    Node node;
+    node.desk.live();
+    node.start();
+    node.rpdo(1);
+    node.network(command);
+    node.sent.clear();
+    node.desk.finish(node.desk.found());
+    node.pass(10 * kMs);
+    EXPECT_EQ(node.tpdo(0).size, 0);
+    node.start();
+    EXPECT_EQ(node.told(Field::kDoneNumber), 1);
+    EXPECT_TRUE(node.told(Field::kBits) & job::kValid);
+    EXPECT_TRUE(node.sequences_agree());
   }
 }
 

@@ -185,8 +185,9 @@ TEST(CanFd, RefusesIdentifiersThatHaveAnotherUse) {
     EXPECT_EQ(node.write(kIndex, 1, id | kNoRemote, 4), Abort::kValue) << id;
     EXPECT_EQ(node.write(kIndex, 1, id | kNoRemote | kNotValid, 4), Abort::kValue) << id;
   }
-  EXPECT_EQ(node.write(kIndex, 1, 0x0000050a, 4), Abort::kValue) << "no remote requests";
   EXPECT_EQ(node.read(kIndex, 1), kOff);
+  EXPECT_EQ(node.write(kIndex, 1, 0x8000050a, 4), Abort::kNone);
+  EXPECT_EQ(node.read(kIndex, 1), kOff) << "remote requests are never answered";
   for (const std::uint32_t id : {0x181U, 0x50aU, 0x57fU, 0x680U, 0x6dfU})
     EXPECT_EQ(node.write(kIndex, 1, id | kNoRemote | kNotValid, 4), Abort::kNone) << id;
 }

@@ -217,6 +217,42 @@ TEST(CanSdo, AbortsWhatThereIsNot) {
   EXPECT_EQ(node.abort_in(node.sdo(Node::object(0x40, 0x2010, 250))), Abort::kNoSubindex);
 }
 
+TEST(CanSdo, TellsAtFirstWhatTheDictionarySaysObjectsStartWith) {
+  using result_map::Field;
+  Node node;
+  over_objects([&](const Object& object) {
+    if (bytes_of(object.type) == 0) return;
+    const bool is_of_this_start =
+        object.entry != nullptr &&
+        (object.entry->field == Field::kSessionId || object.entry->field == Field::kBootCount);
+    if (is_of_this_start) return;
+    EXPECT_EQ(node.read(object.index, object.subindex),
+              object.initial + (object.adds_node ? kNode : 0U))
+        << object.name;
+  });
+}
+
+TEST(CanSdo, SwitchesAPdoOffWhateverItSaysOfRemoteRequests) {
+  constexpr std::uint32_t kEither[] = {0, kNoRemote};
+  for (const std::uint32_t off : kEither) {
+    for (const std::uint32_t on : kEither) {
+      Node node;
+      EXPECT_EQ(node.write(0x1801, 1, kNotValid | off | 0x28a, 4), Abort::kNone);
+      EXPECT_EQ(node.read(0x1801, 1), 0xc000028aU);
+      EXPECT_EQ(node.write(0x1400, 1, kNotValid | off | 0x20a, 4), Abort::kNone);
+      EXPECT_EQ(node.read(0x1400, 1), 0x8000020aU);
+      node.start();
+      EXPECT_EQ(node.tpdo(0).size, 8);
+      EXPECT_EQ(node.tpdo(1).size, 0);
+      EXPECT_EQ(node.write(0x1801, 1, on | 0x28a, 4), Abort::kNone);
+      EXPECT_EQ(node.read(0x1801, 1), 0x4000028aU);
+      EXPECT_EQ(node.write(0x1400, 1, on | 0x20a, 4), Abort::kNone);
+      EXPECT_EQ(node.read(0x1400, 1), 0x20aU);
+      EXPECT_EQ(node.tpdo(1).size, 8);
+    }
+  }
+}
+
 TEST(CanSdo, AbortsWritesOfWhatIsReadOnlyAndOfAnotherSize) {
   Node node;
   const Parameters start = Parameters::at_start({});
@@ -254,8 +290,7 @@ TEST(CanSdo, AbortsValuesThatThereAreNot) {
   EXPECT_EQ(node.write(0x1400, 1, 0x8000020a, 4), Abort::kNone);
   EXPECT_EQ(node.write(0x1400, 2, 252, 1), Abort::kValue);
   EXPECT_EQ(node.write(0x1801, 1, 0x4000018a, 4), Abort::kValue);
-  EXPECT_EQ(node.write(0x1801, 1, 0x0000028a, 4), Abort::kValue)
-      << "remote requests are not answered";
+  EXPECT_EQ(node.write(0x1801, 1, 0x6000028a, 4), Abort::kValue) << "an extended identifier";
   node.start();
   node.desk.live();
   node.rpdo(1);

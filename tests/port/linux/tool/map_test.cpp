@@ -77,6 +77,16 @@ TEST(MapCommand, CsvHasALineAnEntryAndAsManyFields) {
   }
 }
 
+TEST(MapCommand, ObjectsAreHexadecimalWhereverPeopleReadThem) {
+  EXPECT_NE(run({"map", "--format", "csv"})
+                .out.find("\nsession_id,input,110,1,uint16,1,,\"\",0x2010,0x0B,"),
+            std::string::npos);
+  EXPECT_NE(run({"map"}).out.find("| 110 | 400111 | 300111 | 2010:0B | `session_id` |"),
+            std::string::npos);
+  const std::string eds = run({"map", "--format", "eds"}).out;
+  EXPECT_NE(eds.find("[2010subB]\nParameterName=session_id\n"), std::string::npos);
+}
+
 TEST(MapCommand, TheHeaderIsC) {
   EXPECT_EQ(flatpose_registers_in_c(0), 0);
   EXPECT_EQ(flatpose_registers_in_c(1), 101);
@@ -157,6 +167,7 @@ TEST(MapCommand, ShowsTheMapAsAConfigServesIt) {
     const bool is_rotation = result_map::is_rotation(entry.field);
     EXPECT_EQ(line.value("word_order", ""), entry.words() == 2 ? "CDAB" : "");
     EXPECT_EQ(line["scale"], is_rotation && is_int32 ? 1e-6 : entry.scale);
+    EXPECT_EQ(line["unit"], is_rotation ? "rad" : entry.unit);
     EXPECT_EQ(line.contains("none"), entry.may_be_none && (is_int32 || is_float));
     if (line.contains("none")) {
       EXPECT_EQ(line["none"], is_int32 ? json(-1) : json(-1e9F));
@@ -173,7 +184,57 @@ TEST(MapCommand, ShowsTheMapAsAConfigServesIt) {
   EXPECT_NE(text("c").find("FLATPOSE_WORD_ORDER \"CDAB\""), std::string::npos);
   EXPECT_NE(text("c").find("#define FLATPOSE_NONE_INT32 (0 - 1)"), std::string::npos);
   EXPECT_NE(text("st").find("xLowWordFirst : BOOL := TRUE;"), std::string::npos);
-  EXPECT_EQ(text("dbc"), run({"map", "--format", "dbc", "--node", "33"}).out);
+  EXPECT_NE(text("dbc").find("BO_ 417 FLATPOSE_STATUS: 8"), std::string::npos);
+}
+
+std::string dbc_of_jobs(std::initializer_list<const char*> conventions) {
+  const port::TemporaryFolder folder;
+  std::string text = "[[part]]\nname = \"pad\"\nfile = \"pad.fpt\"\n";
+  int number = 0;
+  for (const char* convention : conventions)
+    text += "[[job]]\nnumber = " + std::to_string(++number) +
+            "\nparts = [\"pad\"]\nconvention = \"" + convention + "\"\n";
+  return run({"map", "--format", "dbc", "--config", folder.write("f.toml", text)}).out;
+}
+
+TEST(MapCommand, TheDbcScalesRotationsAsAllJobsHaveThem) {
+  const auto has = [](const std::string& dbc, const std::string& text) {
+    return dbc.find(text) != std::string::npos;
+  };
+  const std::string degrees = dbc_of_jobs({"kuka_abc", "fanuc_wpr"});
+  EXPECT_TRUE(has(degrees, "rotation_1 : 32|24@1- (0.001,0) [-8388.607|8388.607] \"deg\" MASTER"));
+  EXPECT_TRUE(has(degrees, "Rotations: 0.001 deg, as all jobs"));
+  const std::string radians = dbc_of_jobs({"ur_rotation_vector", "ur_rotation_vector"});
+  for (const char* signal :
+       {"rotation_1 : 32|24@1-", "rotation_2 : 8|24@1-", "rotation_3 : 32|24@1-"})
+    EXPECT_TRUE(
+        has(radians, std::string(signal) + " (1e-06,0) [-8.388607|8.388607] \"rad\" MASTER"))
+        << signal;
+  EXPECT_TRUE(has(radians, "rotation_4 : 256|32@1- (1e-06,0) [-2147.483647|2147.483647] \"rad\""));
+  EXPECT_TRUE(has(radians, "Rotations: 1e-06 rad, as all jobs"));
+  EXPECT_TRUE(has(dbc_of_jobs({"abb_quaternion"}),
+                  "rotation_1 : 160|32@1- (1e-06,0) [-2147.483647|2147.483647] \"\" MASTER"));
+  for (const std::string& mixed : {dbc_of_jobs({"kuka_abc", "ur_rotation_vector"}),
+                                   dbc_of_jobs({"abb_quaternion", "ur_rotation_vector"})}) {
+    EXPECT_TRUE(has(mixed, "rotation_1 : 32|24@1- (0.001,0) [-8388.607|8388.607] \"deg\" MASTER"));
+    EXPECT_TRUE(has(mixed, "Rotations: the jobs of the config differ: 0.001 degree"));
+  }
+}
+
+TEST(MapCommand, TheEdsStartsAsTheNodeDoes) {
+  const std::string eds = run({"map", "--format", "eds"}).out;
+  for (const char* text :
+       {"ParameterName=The master's heartbeat\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\n"
+        "DefaultValue=0x7F0000\n",
+        "ParameterName=test_uint32\nObjectType=0x7\nDataType=0x0007\nAccessType=ro\n"
+        "DefaultValue=0x12345678\n",
+        "ParameterName=Manufacturer hardware version\nObjectType=0x7\nDataType=0x0009\n"
+        "AccessType=const\nDefaultValue=-\n"})
+    EXPECT_NE(eds.find(text), std::string::npos) << text;
+  std::string version = run({"--version"}).out;  // "flatpose 0.1.0"
+  version = version.substr(version.find(' ') + 1);
+  EXPECT_NE(eds.find("DataType=0x0009\nAccessType=const\nDefaultValue=" + version),
+            std::string::npos);
 }
 
 TEST(MapCommand, RefusesAConfigThatItCannotShow) {
@@ -183,6 +244,7 @@ TEST(MapCommand, RefusesAConfigThatItCannotShow) {
   expect_refused(run({"map", "--config", unknown}), 2, "word_order");
   const std::string bytes = folder.write("b.toml", "[modbus]\nword_order = \"DCBA\"\n");
   expect_refused(run({"map", "--format", "st", "--config", bytes}), 2, "DCBA");
+  expect_refused(run({"map", "--format", "eds", "--config", bytes}), 2, "EDS");
 }
 
 TEST(MapCommand, RefusesWhatItCannotPrint) {
