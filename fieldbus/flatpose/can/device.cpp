@@ -18,6 +18,7 @@ Status Device::init(const Config& config, std::int64_t now_us) noexcept {
   carries_fd_ = config.carries_fd;
   judgement_ = {};
   spent_number_ = 0;
+  has_twin_ = false;
   report_ = report_of(machine_.snapshot(master()), judgement_);
   boot(now_us);
   return Status::kOk;
@@ -159,6 +160,10 @@ void Device::take_sync() noexcept {
 
 void Device::take_heartbeat(const Frame& frame) noexcept {
   const auto node = static_cast<std::uint8_t>(frame.id - kHeartbeatBase);
+  if (node == config_.node) {
+    has_twin_ = true;
+    return log_.raise(Fault::kTwin);
+  }
   const bool is_life = frame.size == 1 && (frame.data[0] & 0x7f) != 0;  // else it boots
   if (!is_life) return;
   consumer_.heard(node, now_us_);

@@ -18,7 +18,8 @@
 //               unless the config says otherwise, for a classic controller on the bus answers FD
 //               frames with error frames. What FD frames others send is none of a node's.
 //   EMCY        see emergency.hpp
-//   heartbeat   our own; and the master's, whose loss cancels what it asked for
+//   heartbeat   our own; the master's, whose loss cancels what it asked for; and one that bears our
+//               number and is another node's, for a link does not give back what it was given
 //
 // RPDO1: command_number (2 bytes), command_session (2), command (1), pick_outcome (1), argument
 // (2): the job, or with report_pick the pick_number. A number that is 0 or the master's last only
@@ -90,6 +91,8 @@ class Device {
   [[nodiscard]] NetworkState state() const noexcept { return state_; }
   [[nodiscard]] const Config& config() const noexcept { return config_; }
   [[nodiscard]] std::uint8_t error_register() const noexcept { return log_.error_register(); }
+  /// Whether another node's heartbeat or boot-up bore this node's number, since init().
+  [[nodiscard]] bool has_twin() const noexcept { return has_twin_; }
 
  private:
   void boot(std::int64_t now_us) noexcept;
@@ -136,6 +139,7 @@ class Device {
 
   NetworkState state_ = NetworkState::kPreOperational;
   bool owes_boot_up_ = false;
+  bool has_twin_ = false;
   BusState bus_ = BusState::kActive;
   Parameters parameters_;
   EmergencyLog log_;

@@ -15,6 +15,7 @@ constexpr std::uint16_t code_of(Fault fault) noexcept {
     case Fault::kBusWasOff: return 0x8140;
     case Fault::kFramesLost: return 0x8110;
     case Fault::kCommandShort: return 0x8210;
+    case Fault::kTwin: return 0x8150;
     case Fault::kAnswer: return 0xff00;
   }
   return 0x1000;

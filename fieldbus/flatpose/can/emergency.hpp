@@ -17,9 +17,10 @@ enum class Fault : std::uint8_t {
   kBusWasOff,     ///< 8140h: back from bus-off; told for one moment.
   kFramesLost,    ///< 8110h: more frames than could be read; told for one moment.
   kCommandShort,  ///< 8210h: a command (RPDO) shorter than eight bytes.
+  kTwin,          ///< 8150h: another node has this one's number; lasts until the next reset.
   kAnswer,        ///< FF00h - status: a command ended by a fault of ours; see job::is_fault.
 };
-inline constexpr int kFaultCount = 6;
+inline constexpr int kFaultCount = 7;
 
 class EmergencyLog {
  public:

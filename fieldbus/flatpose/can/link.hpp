@@ -19,7 +19,7 @@ class Link {
     std::int64_t received_us = kNever_us;
   };
 
-  /// The next that has come; does not wait.
+  /// The next that has come, never what was sent here; does not wait.
   [[nodiscard]] virtual Received receive() noexcept = 0;
 
   /// Returns whether it was taken. If not there is no room at the moment, or no bus: nothing was

@@ -87,7 +87,10 @@ std::uint32_t Device::number_of(const Object& object) const noexcept {
   if (object.access == Access::kConst)
     return object.initial + (object.adds_node ? config_.node : 0U);
   std::uint32_t value = 0;
-  if (parameters_.read(object.index, object.subindex, config_.node, value)) return value;
+  if (parameters_.read(object.index, object.subindex, config_.node, value)) {
+    const bool is_fd_id = object.index == kFdReportIndex && object.subindex == 1;
+    return is_fd_id && !carries_fd_ ? value | kNotValid : value;
+  }
   switch (object.index) {
     case 0x1001: return log_.error_register();
     case 0x1003:
@@ -149,7 +152,9 @@ Abort Device::write_object(const SdoServer::Step& step) noexcept {
   }
   const Parameters before = parameters_;
   const Abort outcome = parameters_.write(step.index, step.subindex, config_.node, value);
-  if (parameters_.fd.is_valid && !before.fd.is_valid && !carries_fd_) {
+  const bool turns_fd_on =
+      step.index == kFdReportIndex && step.subindex == 1 && (value & kNotValid) == 0;
+  if (turns_fd_on && outcome == Abort::kNone && !carries_fd_) {
     parameters_ = before;
     return Abort::kDeviceState;
   }

@@ -21,7 +21,7 @@ constexpr Named kRefusals[] = {
     {2, "not_ready", "search or scan source do not live"},
     {3, "not_owner", "another master holds the lease"},
     {4, "bad_job", "there is no such job"},
-    {5, "bad_command", "there is no such command"},
+    {5, "bad_command", "there is no such command, or with report_pick no such pick_outcome"},
     {6, "stale_session", "command_session is not session_id: flatpose was started again"},
 };
 constexpr Named kBits[] = {

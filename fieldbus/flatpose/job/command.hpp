@@ -76,4 +76,9 @@ struct Named {
          raw <= static_cast<std::uint16_t>(Command::kReloadJobs);
 }
 
+[[nodiscard]] constexpr bool is_pick_outcome(std::uint16_t raw) noexcept {
+  return raw >= static_cast<std::uint16_t>(PickOutcome::kPicked) &&
+         raw <= static_cast<std::uint16_t>(PickOutcome::kDropped);
+}
+
 }  // namespace flatpose::job

@@ -238,6 +238,8 @@ Refusal Machine::judged(Command command) const noexcept {
   const bool has_session = image_.command_session != 0;
   if (has_session && image_.command_session != config_.session_id) return Refusal::kStaleSession;
   if (!is_command(image_.command)) return Refusal::kBadCommand;
+  if (command == Command::kReportPick && !is_pick_outcome(image_.pick_outcome))
+    return Refusal::kBadCommand;
   if (running_.is_active && command != Command::kCancel) return Refusal::kBusy;
   if (needs_job(command) && jobs_.find(image_.job) == nullptr) return Refusal::kBadJob;
   if (needs_search(command) && !search_lives()) return Refusal::kNotReady;

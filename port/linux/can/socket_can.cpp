@@ -166,9 +166,14 @@ bool SocketCan::bind_again() noexcept {
   return true;
 }
 
+void SocketCan::go_down() noexcept {
+  is_down_ = true;
+  ++down_count_;
+}
+
 can::Link::Received SocketCan::failed(int error) noexcept {
   if (!is_of_interface(error)) return {};
-  is_down_ = true;
+  go_down();
   return state(BusState::kOff);
 }
 
@@ -184,7 +189,10 @@ bool SocketCan::take_error_frame(std::uint32_t classes, std::uint8_t controller)
     if ((controller & kPassive) != 0) fresh = BusState::kErrorPassive;
     if ((controller & CAN_ERR_CRTL_RX_OVERFLOW) != 0) has_lost_frames_ = true;
   }
-  if ((classes & CAN_ERR_BUSOFF) != 0) fresh = BusState::kOff;
+  if ((classes & CAN_ERR_BUSOFF) != 0) {
+    if (state_ != BusState::kOff) ++off_count_;
+    fresh = BusState::kOff;
+  }
   if ((classes & CAN_ERR_RESTARTED) != 0) fresh = BusState::kActive;
   return std::exchange(state_, fresh) != fresh || has_lost_frames_;
 }
@@ -254,7 +262,7 @@ bool SocketCan::send(const can::Frame& frame) noexcept {
     return true;
   if (frame.is_fd && errno == EINVAL) return true;  // the interface has become a classic one
   if (!is_of_interface(errno)) return false;        // ENOBUFS: its queue is full
-  is_down_ = true;
+  go_down();
   state_ = BusState::kOff;
   is_told_ = false;
   return false;

@@ -10,6 +10,7 @@
 
 #include "flatpose/can/link.hpp"
 #include "port/linux/can/arrival_clock.hpp"
+#include "port/linux/can/condition.hpp"
 #include "port/linux/can/interface.hpp"
 #include "port/linux/clock/steady_clock.hpp"
 #include "port/linux/modbus/file_descriptor.hpp"
@@ -23,6 +24,9 @@ class SocketCan final : public can::Link {
             const CanNeed& need);
 
   [[nodiscard]] bool carries_fd() const noexcept { return carries_fd_; }
+  [[nodiscard]] CanCondition condition() const noexcept {
+    return {down_count_, off_count_, state_, is_down_, carries_fd_, false};
+  }
 
   /// To wait at: readable when receive() has something.
   [[nodiscard]] int socket() const noexcept { return socket_.get(); }
@@ -36,6 +40,7 @@ class SocketCan final : public can::Link {
   [[nodiscard]] bool drop_unread() noexcept;
   [[nodiscard]] bool bind_again() noexcept;
   void look_at_clocks() noexcept;
+  void go_down() noexcept;
   [[nodiscard]] Received failed(int error) noexcept;
   [[nodiscard]] Received state(can::BusState state) noexcept;
   [[nodiscard]] bool take_error_frame(std::uint32_t classes, std::uint8_t controller) noexcept;
@@ -48,6 +53,8 @@ class SocketCan final : public can::Link {
   std::int64_t arrived_us_ = 0;  ///< What was read last; what is told of the bus comes with it.
   can::BusState state_ = can::BusState::kActive;
   bool is_down_ = false;  ///< The interface, or it is gone: `state_` is kOff.
+  std::uint16_t down_count_ = 0;
+  std::uint16_t off_count_ = 0;
   bool carries_fd_ = false;
   bool is_told_ = false;  ///< That has been received.
   bool has_lost_frames_ = false;

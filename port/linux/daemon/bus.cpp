@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "port/linux/daemon/event_file.hpp"
 
@@ -35,7 +36,7 @@ job::Config machine_config(const Config& config, std::uint16_t boot_count) {
   made.boot_count = boot_count;
   made.handshake = config.modbus.handshake;
   made.allow_simulated = config.source.allow_simulated;
-  made.lease_us = config.modbus.lease_us;
+  made.lease_us = config.lease_us.value_or(made.lease_us);
   made.liveness_limit_us = kLivenessLimit_us;
   return made;
 }
@@ -57,13 +58,27 @@ Bus::Bus(const Config& config, const job::JobTable& jobs, SearchEngine& engine,
     throw std::runtime_error("the job machine refuses its jobs");
   const ModbusConfig& modbus = config.modbus;
   if (modbus.is_on) server_.emplace(modbus.place, modbus.bind, modbus.port, -1, modbus.allowed);
-  if (config.can.is_on) can_.emplace(config.can, machine_, clock_.now_us());
+  if (!config.can.is_on) return;
+  can_.emplace(config.can, machine_, clock_.now_us());
+  can_condition_.store(can_->condition());
+  can_interface_ = config.can.interface;
+  can_log_.emplace(can_interface_, config.can.node.node, can_->condition());
 }
 
 std::string Bus::name() const {
   std::string name = server_ ? "Modbus TCP on " + server_->name() : std::string();
   if (can_) name += (name.empty() ? "" : "; ") + can_->name();
   return name;
+}
+
+std::vector<std::string> Bus::news() {
+  if (!can_log_) return {};
+  const bool is_there = port::look_at_can_link(can_interface_).index != 0;
+  std::vector<std::string> lines =
+      can_log_->lines(clock_.now_us(), can_condition_.load(), is_there);
+  if (!std::exchange(has_told_doubt_, true) && !can_->doubt().empty())
+    lines.insert(lines.begin(), "warning: " + can_->doubt());
+  return lines;
 }
 
 void Bus::start() {
@@ -88,7 +103,9 @@ void Bus::work() noexcept {
     take_events();
     if (server_) server_->serve(clock_.now_us(), *this);
     if (clock_.now_us() >= machine_us_) pass_on(machine_.process(machine_now_us(), {}));
-    if (can_) pass_on(can_->station().tell(clock_.now_us()));
+    if (!can_) continue;
+    pass_on(can_->station().tell(clock_.now_us()));
+    can_condition_.store(can_->condition());
   }
 }
 

@@ -6,10 +6,12 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "flatpose/job/machine.hpp"
 #include "flatpose/modbus/server.hpp"
 #include "port/linux/clock/steady_clock.hpp"
+#include "port/linux/daemon/can_log.hpp"
 #include "port/linux/daemon/can_node.hpp"
 #include "port/linux/daemon/config.hpp"
 #include "port/linux/daemon/search_engine.hpp"
@@ -34,6 +36,11 @@ class Bus final : private port::Responder {
   /// Counts the turns of the thread, of which there are some every second.
   [[nodiscard]] std::uint32_t turns() const noexcept { return turns_.load(); }
 
+  [[nodiscard]] bool has_can() const noexcept { return can_log_.has_value(); }
+  /// What has become of the CAN interface since the last call, for the log.  Call it now and then.
+  /// Thread: one, not the bus's.
+  [[nodiscard]] std::vector<std::string> news();
+
  private:
   std::size_t respond(const job::Master& master, const modbus::Adu& adu,
                       std::span<std::uint8_t, modbus::kAduBytesMax> response) noexcept override;
@@ -57,6 +64,11 @@ class Bus final : private port::Responder {
   std::int64_t machine_us_ = 0;  ///< When the machine wants to be called.
   std::int64_t can_served_us_ = 0;
   std::int64_t ask_us_ = 0;  ///< When search and source are asked for a sign of life.
+  std::atomic<port::CanCondition> can_condition_{};
+  static_assert(std::atomic<port::CanCondition>::is_always_lock_free);
+  std::string can_interface_;
+  std::optional<CanLog> can_log_;
+  bool has_told_doubt_ = false;
   std::atomic<bool> is_over_{false};
   std::atomic<std::uint32_t> turns_{0};
   std::thread thread_;

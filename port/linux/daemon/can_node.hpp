@@ -21,12 +21,20 @@ class CanNode {
   [[nodiscard]] int socket() const noexcept { return link_.socket(); }
   /// "CANopen node 10 on can0 at 250 kbit/s"
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// What the config asks for and nobody can check; empty: nothing.
+  [[nodiscard]] const std::string& doubt() const noexcept { return doubt_; }
+  [[nodiscard]] port::CanCondition condition() const noexcept {
+    port::CanCondition found = link_.condition();
+    found.has_twin = device_.has_twin();
+    return found;
+  }
 
  private:
   port::SocketCan link_;
   can::Device device_;
   can::Station station_;
   std::string name_;
+  std::string doubt_;
 };
 
 }  // namespace flatpose::daemon

@@ -12,8 +12,10 @@ namespace flatpose::daemon {
 using LookAtCan = std::function<port::CanInterface(const std::string& name)>;
 
 /// What --check prints of a valid config, each lack of the machine with the command that mends it;
-/// advice, for the config may be another machine's.  `root` stands before /proc, /sys and /dev, and
-/// `look_at_can` in place of the kernel: tests give their own.
+/// advice, for the config may be another machine's; but the first line tells whether the daemon
+/// would start on this one, and if not why, in the words in which the start would say it.  `root`
+/// stands before /proc, /sys and /dev, and `look_at_can` in place of the kernel: tests give their
+/// own.
 [[nodiscard]] std::string check_report(const std::string& path, const Config& config,
                                        const std::string& root = {},
                                        const LookAtCan& look_at_can = port::look_at_can);

@@ -6,6 +6,9 @@
 namespace flatpose::daemon {
 namespace {
 
+constexpr Range kLeases_ms{100, 3'600'000};
+constexpr std::int64_t kUsPerMs = 1000;
+
 Config read_config(Section file) {
   Config config;
   read_search(file.section("search"), config);
@@ -21,6 +24,18 @@ Config read_config(Section file) {
 }
 
 }  // namespace
+
+void read_lease(Section& section, Config& config) {
+  const auto lease_ms = section.whole("lease_ms", kLeases_ms);
+  if (!lease_ms) return;
+  const std::int64_t before_ms = config.lease_us.value_or(*lease_ms * kUsPerMs) / kUsPerMs;
+  if (*lease_ms != before_ms)
+    section.fail("lease_ms",
+                 "'lease_ms' is " + std::to_string(*lease_ms) + " here and " +
+                     std::to_string(before_ms) + " in the other bus's section",
+                 "there is one lease: write it once");
+  config.lease_us = *lease_ms * kUsPerMs;
+}
 
 Config load_config(const std::string& path) {
   const std::vector<std::byte> bytes = port::read_file(path, kConfigBytesMax);

@@ -43,7 +43,6 @@ struct ModbusConfig {
   std::uint8_t unit = 1;
   result_map::WireFormat format;
   job::Handshake handshake = job::Handshake::kNumber;
-  std::int64_t lease_us = 5'000'000;
 };
 
 /// [can]; without the section there is no node.
@@ -106,6 +105,8 @@ struct Config {
   port::RealtimeConfig realtime;
   ModbusConfig modbus;
   CanConfig can;
+  /// Of masters on either bus, for there is one lease; none: the job machine's usual one.
+  std::optional<std::int64_t> lease_us;
   SourceConfig source;
   RecordsConfig records;
   std::vector<PartConfig> parts;
@@ -123,6 +124,8 @@ void read_realtime(Section section, Config& config);
 void read_modbus(Section section, Config& config);
 /// After read_modbus(): both follow one handshake.
 void read_can(Section section, Config& config);
+/// Of either: who writes it in both writes the same.
+void read_lease(Section& section, Config& config);
 void read_source(Section section, Config& config);
 void read_records(Section section, Config& config);
 void read_part(Section section, Config& config);

@@ -21,6 +21,7 @@
 #include "port/linux/daemon/search_engine.hpp"
 #include "port/linux/daemon/service.hpp"
 #include "port/linux/daemon/stop_signal.hpp"
+#include "port/linux/daemon/warnings.hpp"
 #include "port/linux/files/input_error.hpp"
 #include "port/linux/realtime/process_setup.hpp"
 #include "port/linux/records/boot_count.hpp"
@@ -79,9 +80,12 @@ Config config_of(const Options& options) {
 
 /// Until a signal ends it. The service manager hears that the daemon lives only as long as the
 /// search thread answers and the bus goes round.
-void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal, Reloader& reloader) {
+void serve(SearchEngine& engine, Bus* bus, StopSignal& signal, Reloader& reloader, Log& log) {
   constexpr std::chrono::microseconds kReloadStep(2000);
-  const auto interval = alive_interval();
+  constexpr std::chrono::microseconds kNewsStep(500'000);
+  auto interval = alive_interval();
+  if (bus != nullptr && bus->has_can())
+    interval = std::min(interval.value_or(kNewsStep), kNewsStep);
   std::uint32_t turns = 0;
   std::uint32_t asked = engine.ask();
   for (;;) {
@@ -89,6 +93,8 @@ void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal, Reloader& r
     if (came == Signal::kStop) return;
     if (came == Signal::kReload) reloader.ask();
     reloader.step();
+    if (bus != nullptr)
+      for (const std::string& line : bus->news()) log.line(line);
     const bool is_bus_alive = bus == nullptr || std::exchange(turns, bus->turns()) != bus->turns();
     if (!engine.has_answered(asked) || !is_bus_alive) continue;
     tell_alive();
@@ -98,19 +104,7 @@ void serve(SearchEngine& engine, const Bus* bus, StopSignal& signal, Reloader& r
 
 void warn(const Config& config, const JobSet& jobs, Log& log) {
   for (const std::string& line : jobs.problems()) log.line("warning: " + line);
-  if (!config.modbus.is_on && !config.can.is_on)
-    log.line("warning: no [modbus] and no [can]: nobody can ask for anything");
-  for (const JobConfig& job : config.jobs) {
-    const bool has_pdos_alone = config.can.is_on && !config.can.node.fd_frame;
-    if (has_pdos_alone && job.rule.convention == Convention::kAbbQuaternion)
-      log.line("warning: job " + std::to_string(job.rule.job) +
-               ": a quaternion has no room in CAN's PDOs, where its status is out_of_range; on an "
-               "FD bus fd_frame has");
-  }
-  if (!config.source.is_any()) log.line("warning: no [source]: there are no scans");
-  if (config.jobs.empty()) log.line("warning: no [[job]]: every trigger is refused");
-  if (!config.source.replay.empty() && !config.source.allow_simulated)
-    log.line("warning: replayed scans make no pose without allow_simulated = true in [source]");
+  for (const std::string& line : warnings_of(config)) log.line("warning: " + line);
 }
 
 std::uint16_t counted_boots(const RecordsConfig& records, Log& log) {
@@ -144,7 +138,7 @@ void run_service(const Options& options, const Config& config, std::ostream& err
   events.line("ready: " + state);
   Reloader reloader(
       config, [&options] { return config_of(options); }, engine, bus != nullptr, events);
-  serve(engine, bus.get(), signal, reloader);
+  serve(engine, bus.get(), signal, reloader, events);
   tell_stopping();
   bus.reset();
   events.line("ended");
@@ -164,8 +158,10 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
          "--scan", options.scan_path,
          "replay this file for every trigger, or a folder's files in the order of their names")
       ->type_name("FILE|DIR");
-  app.add_flag("--check", options.only_checks,
-               "validate the config, name what the machine lacks for real time, and end");
+  app.add_flag(
+      "--check", options.only_checks,
+      "validate the config, say whether the daemon would start on this machine and what it "
+      "lacks for real time, and end; the exit code is that of the config alone");
   try {
     app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::ParseError& error) {
@@ -178,6 +174,7 @@ int run(std::span<const std::string> args, std::ostream& out, std::ostream& err,
     const JobSet jobs = load_jobs(config);
     out << check_report(options.config_path, config, root);
     for (const std::string& line : jobs.problems()) out << "\nwarning: " << line << '\n';
+    for (const std::string& line : warnings_of(config)) out << "\nwarning: " << line << '\n';
     out << std::flush;
     if (!out) return say(err, "stdout: cannot write it; check where it goes", ExitCode::kInput);
   } else {

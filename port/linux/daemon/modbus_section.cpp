@@ -12,7 +12,6 @@ namespace {
 
 constexpr Range kPorts{0, 65535};
 constexpr Range kUnits{1, 247};
-constexpr Range kLeases_ms{100, 3'600'000};
 constexpr std::size_t kNetworksMax = 64;
 constexpr Range kInt32s{INT32_MIN, INT32_MAX};
 constexpr double kFloatMost = std::numeric_limits<float>::max();
@@ -50,8 +49,7 @@ void read_modbus(Section section, Config& config) {
     modbus.format.none_float32 = std::bit_cast<std::uint32_t>(static_cast<float>(*none));
   modbus.handshake =
       static_cast<job::Handshake>(section.choice("handshake", kHandshakes).value_or(0));
-  if (const auto lease_ms = section.whole("lease_ms", kLeases_ms))
-    modbus.lease_us = *lease_ms * 1000;
+  read_lease(section, config);
   section.finish();
 }
 

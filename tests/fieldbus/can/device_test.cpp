@@ -433,6 +433,30 @@ TEST(CanBusState, OffMakesPreOperationalAndIsToldAfterwards) {
   EXPECT_EQ(node.device.error_register(), 0);
 }
 
+TEST(CanHeartbeat, OfItsOwnNumberIsAnothersAndIsToldOnceUntilAReset) {
+  Node node;
+  Frame remote = frame_of(kHeartbeatBase + kNode, {});
+  remote.is_remote = true;
+  Frame extended = frame_of(kHeartbeatBase + kNode, {5});
+  extended.is_extended = true;
+  Frame fd = frame_of(kHeartbeatBase + kNode, {5});
+  fd.is_fd = true;
+  for (const Frame& frame : {remote, extended, fd}) node.take(frame);
+  node.heartbeat(kNode - 1);
+  EXPECT_FALSE(node.device.has_twin());
+  for (const NetworkState state : {NetworkState::kPreOperational, NetworkState::kOperational})
+    node.heartbeat(kNode, static_cast<std::uint8_t>(state));
+  EXPECT_TRUE(node.device.has_twin());
+  EXPECT_EQ(node.last_emergency(), 0x8150);
+  EXPECT_EQ(node.device.error_register(), 0x11);
+  EXPECT_EQ(node.read(0x1003, 0), 1U) << "once";
+  node.network(NetworkCommand::kResetNode);
+  EXPECT_EQ(node.device.error_register(), 0);
+  EXPECT_TRUE(node.device.has_twin());
+  node.heartbeat(kNode);
+  EXPECT_EQ(node.read(0x1003, 0), 1U) << "still there";
+}
+
 TEST(CanTpdo, KeepsItsInhibitTimeAndThenTellsTheNewest) {
   Node node;
   node.desk.live();

@@ -217,9 +217,13 @@ TEST(CanFd, IsSilentWhileTheInterfaceIsClassicAndBackWithIt) {
   EXPECT_EQ(fd_count(node.sent), 0);
   EXPECT_EQ(node.tpdo(0).size, 8) << "all else goes on";
   EXPECT_GT(node.device.next_us(), node.desk.now_us) << "no turning in circles";
+  EXPECT_EQ(node.read(kIndex, 1), kOff) << "it is not sent";
+  EXPECT_EQ(node.write(kIndex, 1, kOn, 4), Abort::kDeviceState);
+  EXPECT_EQ(node.write(kIndex, 5, 0, 2), Abort::kNone) << "all else may be set";
   event.carries_fd = true;
   EXPECT_EQ(fd_count(node.process({.bus = &event})), 1);
   EXPECT_EQ(number(node.whole(), 4, 2), 1U);
+  EXPECT_EQ(node.read(kIndex, 1), kOn);
 }
 
 TEST(CanFd, FollowsTimesAndSyncAsTpdosDo) {

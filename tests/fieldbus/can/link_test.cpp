@@ -265,6 +265,26 @@ TEST(CanLink, BusOffAtAnyMomentEndsInAnAnswerAfterwards) {
   EXPECT_GT(plc.emergencies(0x8140), 50);
 }
 
+TEST(CanLink, TwoNodesOfOneNumberHearOfEachOtherAndEachSaysSoOnce) {
+  World world(7);
+  Plc plc(world);
+  expect_pose_of(1, plc.ask(1));
+  for (int i = 0; i < 5000; ++i) world.step();
+  EXPECT_FALSE(world.device.has_twin()) << "what it says itself is not another's";
+  job::Desk other_desk;
+  Device twin(other_desk.machine);
+  Station other(twin, world.bus.attach());
+  EXPECT_EQ(twin.init({}, world.desk.now_us), Status::kOk);
+  for (int i = 0; i < 5000; ++i) {
+    world.step();
+    (void)other.serve(world.desk.now_us);
+  }
+  EXPECT_TRUE(world.device.has_twin());
+  EXPECT_TRUE(twin.has_twin());
+  (void)plc.ask(2, 1);
+  EXPECT_EQ(plc.emergencies(0x8150), 2);
+}
+
 TEST(CanLink, ABusWithoutRoomIsTriedLessAndLessOftenAndThenGetsTheNewest) {
   World world(4);
   Plc plc(world);

@@ -44,6 +44,7 @@ class Desk {
     CommandImage image = machine.image_for({address, 1});
     image.command_number = number;
     image.command = static_cast<std::uint16_t>(command);
+    if (command == Command::kReportPick) image.pick_outcome = 1;
     return image;
   }
   Verdict write(const CommandImage& image, Address address = kAda, std::uint64_t connection = 1) {

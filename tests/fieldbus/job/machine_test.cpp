@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 #include "tests/fieldbus/job/desk.hpp"
 
@@ -252,6 +253,27 @@ TEST(JobMachine, NextGoesThroughTheMatchesOfTheScan) {
   EXPECT_EQ(desk.see().match.index, 0);
   desk.write(9, Command::kNext);
   EXPECT_EQ(desk.see().answer, Answer::kNoMatch);
+}
+
+TEST(JobMachine, APickEndsInOneOfTheWaysThatThereAre) {
+  ReadyDesk desk;
+  std::uint16_t number = 1;
+  for (const int outcome : {0, 1, 2, 3, 4, 5, 77, 256, 65535}) {
+    SCOPED_TRACE(outcome);
+    CommandImage image = desk.image(number, Command::kReportPick);
+    image.pick_outcome = static_cast<std::uint16_t>(outcome);
+    desk.write(image);
+    const bool is_one = std::string(name_of(pick_outcome_names(), outcome)) != "unknown";
+    EXPECT_EQ(desk.has(kBusy), is_one);
+    EXPECT_EQ(desk.see().refused_number, is_one ? 0 : number);
+    EXPECT_EQ(desk.see().refused_status, is_one ? Refusal::kNone : Refusal::kBadCommand);
+    if (is_one) desk.finish({.answer = Answer::kOk});
+    ++number;
+  }
+  CommandImage locate = desk.image(number);
+  locate.pick_outcome = 77;
+  desk.write(locate);
+  EXPECT_TRUE(desk.has(kBusy)) << "of another command it says nothing";
 }
 
 TEST(JobMachine, NextKeepsFrameAndConventionThoughOtherCommandsCameBetween) {

@@ -572,7 +572,7 @@ class Hostile(Guest):
 
 
 class Link(Guest):
-    can_lines = "heartbeat_ms = 100"
+    can_lines = "heartbeat_ms = 100\nbit_rate = 250_000"
 
     def silent_for(self, seconds):
         count = len(self.master.states)
@@ -712,6 +712,31 @@ class Link(Guest):
         master.close()
         master.__init__()
         self.works_again(7)
+
+    def test_the_log_and_an_emergency_tell_of_a_twin_and_the_log_of_the_interface(self):
+        def logged(part):
+            self.assertTrue(select.select([self.daemon.process.stderr], [], [], PATIENCE_S)[0], part)
+            line = self.daemon.process.stderr.readline()
+            self.daemon.log += line
+            self.assertIn(part, line)
+
+        master = self.master
+        logged("warning: vcan0 tells no bit rate: nothing checks that it is 250 kbit/s")
+        self.assertNotIn("link data", self.daemon.log)
+        master.wait_for(lambda: False, 0.6)
+        self.assertEqual(master.emergencies, [], "its own heartbeat is not another's")
+        master.send(0x700 + NODE, b"\x05")
+        self.assertTrue(master.wait_for(lambda: 0x8150 in master.emergencies, 5))
+        logged("warning: another node 10 is on vcan0: give one of them another number")
+        for change in (("down",), ("mtu", "16"), ("up",)):
+            run("ip", "link", "set", "vcan0", *change)
+        self.addCleanup(run, "ip", "link", "set", "vcan0", "up")
+        self.addCleanup(run, "ip", "link", "set", "vcan0", "mtu", "72")
+        self.addCleanup(run, "ip", "link", "set", "vcan0", "down")
+        logged("vcan0 was down and is back: it is classic now")
+        self.inject(BUS_OFF)
+        logged("warning: vcan0 is bus-off")
+        self.inject(RESTARTED)
 
     def test_a_slow_bus_that_has_no_room_gets_all_answers(self):
         """125 kbit/s, and a queue for few frames: sending fails with ENOBUFS now and then."""

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "port/linux/can/link_kind.hpp"
 #include "port/linux/files/input_error.hpp"
 
 namespace flatpose::port {
@@ -54,6 +55,33 @@ TEST(CanInterface, ThatIsClassicIsRefusedForFdFramesWithTheCommandThatMakesItFd)
   ASSERT_TRUE(virtual_one);
   EXPECT_EQ(virtual_one->remedy,
             "ip link set vcan0 down; ip link set vcan0 mtu 72; ip link set vcan0 up");
+}
+
+TEST(CanInterface, OfAnotherKindIsNoneWhateverIsAskedOfIt) {
+  CanInterface ethernet{.index = 2, .is_can = false, .is_up = true};
+  const auto problem = problem_of("eth0", ethernet, {});
+  ASSERT_TRUE(problem);
+  EXPECT_EQ(problem->what, "eth0 is no CAN interface");
+  const CanInterface loopback = look_at_can_link("lo");
+  if (loopback.index == 0) GTEST_SKIP() << "this machine has no lo";
+  EXPECT_FALSE(loopback.is_can);
+  EXPECT_EQ(link_kind_of(loopback.index), "") << "there long before links had kinds";
+  EXPECT_EQ(link_kind_of(0), "");
+}
+
+TEST(CanInterface, ThatTellsNoBitRateLeavesADoubtWhereOneIsAskedFor) {
+  EXPECT_EQ(doubt_of("vcan0", kVirtual, {.bit_rate_per_s = 250'000}),
+            "vcan0 tells no bit rate: nothing checks that it is 250 kbit/s");
+  EXPECT_FALSE(doubt_of("vcan0", kVirtual, {}));
+  EXPECT_FALSE(doubt_of("can0", kReal, {.bit_rate_per_s = 250'000}));
+}
+
+TEST(CanInterface, NamesAreThoseThatTheKernelLetsBe) {
+  for (const char* const name : {"can0", "a", "fifteen-letters", "can.1"})
+    EXPECT_TRUE(is_interface_name(name)) << name;
+  for (const char* const name :
+       {"", ".", "..", "sixteen-letters-", "can 0", "can\n0", "a/b", "a:1"})
+    EXPECT_FALSE(is_interface_name(name)) << name;
 }
 
 TEST(CanInterface, ThatIsDownIsBroughtUpByItsCommand) {

@@ -81,7 +81,10 @@ TEST(Config, HasACanNodeWhenItsSectionIsThere) {
   EXPECT_TRUE(fd.can.need().fd);
   EXPECT_EQ(fd.can.need().bit_rate_per_s, 500'000U);
   expect_refused("[can]\nfd_frame_id = 0x18a\n", {"dir/f.toml:2: ", "0x680 to 0x6DF"});
-  expect_refused("[can]\nfd_frame_id = 0x701\n", {"dir/f.toml:2: "});
+  expect_refused("[can]\nfd_frame_id = 0x701\n", {"dir/f.toml:2: ", "'fd_frame_id' is 0x701"});
+  expect_refused("[can]\nfd_frame_id = 0\n", {"dir/f.toml:2: ", "'fd_frame_id' is 0"});
+  expect_refused("[can]\ninterface = \"\"\n", {"dir/f.toml:2: ", "'interface' is \"\""});
+  expect_refused("[can]\ninterface = \"a-name-too-long0\"\n", {"dir/f.toml:2: ", "1 to 15"});
   expect_refused("[can]\nfd_frame = 1\n", {"dir/f.toml:2: "});
   expect_refused("[can]\nnode = 128\n", {"dir/f.toml:2: ", "1 and 127"});
   expect_refused("[can]\nnode = 5\nmaster = 5\n", {"dir/f.toml:3: ", "the same"});
@@ -205,7 +208,7 @@ TEST(Config, HoldsBusSourceAndJobs) {
   EXPECT_EQ(config.modbus.format.order, result_map::WordOrder::kBadc);
   EXPECT_EQ(config.modbus.format.none_int32, 0xffffffffU);
   EXPECT_EQ(config.modbus.handshake, job::Handshake::kBits);
-  EXPECT_EQ(config.modbus.lease_us, 700'000);
+  EXPECT_EQ(config.lease_us, 700'000);
   EXPECT_EQ(config.source.replay, "dir/s.pcd");
   EXPECT_EQ(config.source.up, port::Up::kPlusZ);
   EXPECT_FALSE(config.source.allow_simulated);
@@ -227,6 +230,17 @@ TEST(Config, HoldsBusSourceAndJobs) {
   EXPECT_EQ(job.report.limits.greatest_mm.y, 2.5);
   EXPECT_EQ(config.jobs.at(1).rule.job, 1);
   EXPECT_FALSE(parse_config(kPath, "").modbus.is_on);
+}
+
+TEST(Config, HasOneLeaseWhicheverBusItIsWrittenAt) {
+  EXPECT_FALSE(parse_config(kPath, "[modbus]\n[can]\n").lease_us);
+  EXPECT_EQ(parse_config(kPath, "[can]\nlease_ms = 700\n").lease_us, 700'000);
+  EXPECT_EQ(parse_config(kPath, "[modbus]\nlease_ms = 800\n[can]\n").lease_us, 800'000);
+  EXPECT_EQ(parse_config(kPath, "[can]\nlease_ms = 900\n[modbus]\nlease_ms = 900\n").lease_us,
+            900'000);
+  expect_refused("[modbus]\nlease_ms = 700\n[can]\nlease_ms = 701\n",
+                 {"dir/f.toml:4: ", "'lease_ms' is 701 here and 700", "write it once"});
+  expect_refused("[can]\nlease_ms = 99\n", {"dir/f.toml:2: ", "100 and 3600000"});
 }
 
 TEST(Config, RefusesJobsThatCannotBeRun) {

@@ -97,6 +97,8 @@ TEST(Check, OfAGoodMachineHasNothingToMend) {
   EXPECT_EQ(ran.err, "");
   EXPECT_EQ(ran.out.rfind(path + ": valid; 2 search threads on CPU 2-3, ", 0), 0U) << ran.out;
   EXPECT_NE(ran.out.find("the machine lacks nothing"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nwarning: no [modbus] and no [can]: nobody can ask"), std::string::npos)
+      << "what a start warns of: " << ran.out;
 }
 
 TEST(Check, NamesWhatTheMachineLacksAndIsStillContent) {
@@ -127,6 +129,11 @@ TEST(Daemon, DoesNotStartWithoutTheMemory) {
   const Ran checked = run({"--config", path, "--check"}, machine.root());
   EXPECT_EQ(checked.code, 0);
   EXPECT_NE(checked.out.find("memory: 0 MB are free"), std::string::npos) << checked.out;
+  EXPECT_EQ(
+      checked.out.rfind(
+          path + ": valid, but the daemon would not start on this machine: [search] needs ", 0),
+      0U)
+      << checked.out;
 }
 
 /// The daemon as its service manager sees it: a socket for its state, a pipe for its log.

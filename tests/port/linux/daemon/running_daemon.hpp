@@ -212,7 +212,7 @@ class Plc {
   /// Writes and waits until the number is done, or refused.
   Block trigger(std::uint16_t number, std::uint16_t session = 0, std::uint16_t command = 1,
                 std::uint16_t job = 1) {
-    EXPECT_TRUE(write({number, session, command, job}));
+    EXPECT_TRUE(write({number, session, command, job, 0, 1}));  // a pick that went well
     Block seen;
     EXPECT_TRUE(comes_true([&] {
       seen = block();
