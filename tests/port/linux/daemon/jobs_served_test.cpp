@@ -236,11 +236,13 @@ TEST_F(JobsServed, ExclusionsAndHeightsBoundTheSearch) {
   const Vec3 p = located(plain, kScan)->matches[0].face_T_object.position_mm;
   const auto number = [](double value) { return std::to_string(value); };
   const std::string there = "circle:" + number(p.x) + "," + number(p.y) + ",15";
+  const std::string time = "answer_by_ms = 120000\n";  // on a machine with much else to do
   const std::string config =
-      dry_run("exclusions = [\"circle:5000,0,1\"]\nheight_mm = [" + number(p.z - 1) + ", " +
+      dry_run(time + "exclusions = [\"circle:5000,0,1\"]\nheight_mm = [" + number(p.z - 1) + ", " +
                   number(p.z + 1) + "]",
-              "[[job]]\nnumber = 2\nparts = [\"pad\"]\nexclusions = [\"circle:5000,0,1\", \"" +
-                  there + "\"]\n[[job]]\nnumber = 3\nparts = [\"pad\"]\nheight_mm = [" +
+              "[[job]]\nnumber = 2\nparts = [\"pad\"]\n" + time +
+                  "exclusions = [\"circle:5000,0,1\", \"" + there +
+                  "\"]\n[[job]]\nnumber = 3\nparts = [\"pad\"]\n" + time + "height_mm = [" +
                   number(p.z + 40) + ", " + number(p.z + 90) + "]\n");
   RunningDaemon daemon({"--config", config});
   Plc plc(daemon.port());
