@@ -73,9 +73,9 @@ std::string Bus::name() const {
 
 std::vector<std::string> Bus::news() {
   if (!can_log_) return {};
-  const bool is_there = port::look_at_can_link(can_interface_).index != 0;
-  std::vector<std::string> lines =
-      can_log_->lines(clock_.now_us(), can_condition_.load(), is_there);
+  const port::CanCondition fresh = can_condition_.load();
+  const bool is_there = !fresh.is_down || port::look_at_can_link(can_interface_).index != 0;
+  std::vector<std::string> lines = can_log_->lines(clock_.now_us(), fresh, is_there);
   if (!std::exchange(has_told_doubt_, true) && !can_->doubt().empty())
     lines.insert(lines.begin(), "warning: " + can_->doubt());
   return lines;

@@ -83,7 +83,8 @@ Config config_of(const Options& options) {
 void serve(SearchEngine& engine, Bus* bus, StopSignal& signal, Reloader& reloader, Log& log) {
   constexpr std::chrono::microseconds kReloadStep(2000);
   constexpr std::chrono::microseconds kNewsStep(500'000);
-  auto interval = alive_interval();
+  const auto watched = alive_interval();
+  auto interval = watched;
   if (bus != nullptr && bus->has_can())
     interval = std::min(interval.value_or(kNewsStep), kNewsStep);
   std::uint32_t turns = 0;
@@ -95,6 +96,7 @@ void serve(SearchEngine& engine, Bus* bus, StopSignal& signal, Reloader& reloade
     reloader.step();
     if (bus != nullptr)
       for (const std::string& line : bus->news()) log.line(line);
+    if (!watched) continue;
     const bool is_bus_alive = bus == nullptr || std::exchange(turns, bus->turns()) != bus->turns();
     if (!engine.has_answered(asked) || !is_bus_alive) continue;
     tell_alive();
