@@ -12,14 +12,14 @@ namespace {
 using job::FrameName;
 
 const Pose kWorkTScan{rotation_from_vector({3.0, 0.1, 0.0}), {5, 6, 600}};
-const Pose kRobotTScan{rotation_from_vector({0.2, 3.0, 0.0}), {900, 0, 700}};
+const Pose kRobotTScanPose{rotation_from_vector({0.2, 3.0, 0.0}), {900, 0, 700}};
 const Vec3 kPoint{10, 20, 590};
 
 class AlignmentTest : public testing::Test {
  protected:
   AlignmentTest() {
     port::write_work_file(work_, {kWorkTScan, port::Up::kMinusZ, {}});
-    port::write_robot_file(robot_, {kRobotTScan, {}, {}});
+    port::write_robot_file(robot_, {kRobotTScanPose, {}, {}});
   }
   static void expect_same(const Vec3& a, const Vec3& b) { EXPECT_NEAR(norm(a - b), 0.0, 1e-9); }
   /// A point of the scan as the frame at the face has it.
@@ -43,7 +43,7 @@ TEST_F(AlignmentTest, PointsOfTheScanComeOutInTheFrameAsked) {
   for (const std::string& named : {std::string(), work_}) {
     const auto robot = load_alignment(named, robot_, FrameName::kRobot, {});
     ASSERT_TRUE(robot.serves(FrameName::kRobot));
-    expect_same(told(robot.frames(FrameName::kRobot, port::Up::kMinusZ)), kRobotTScan * kPoint);
+    expect_same(told(robot.frames(FrameName::kRobot, port::Up::kMinusZ)), kRobotTScanPose * kPoint);
   }
 }
 
@@ -84,7 +84,7 @@ TEST_F(AlignmentTest, HashCoversBothFiles) {
   port::write_work_file(work_, {moved, port::Up::kMinusZ, {}});
   const auto second = load_alignment(work_, robot_, FrameName::kRobot, {}).hash;
   EXPECT_NE(second, first);
-  moved = kRobotTScan;
+  moved = kRobotTScanPose;
   moved.position_mm.x += 1.0;
   port::write_robot_file(robot_, {moved, {}, {}});
   EXPECT_NE(load_alignment(work_, robot_, FrameName::kRobot, {}).hash, second);
