@@ -6,7 +6,7 @@ include(GoogleTest)
 # The folder of real scans; tests that need it are skipped without it, and fail when CI is set.
 set(FLATPOSE_REAL_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "Where the real scans lie")
 
-# Undefined behaviour is looked for in what is tested; in the tests' own code it would double the time to compile them.
+# Undefined behaviour is looked for in what is tested; in the tests' own code it would add half to the time they take to compile.
 # To be linked after flatpose_options, for the last word counts.
 add_library(flatpose_test_options INTERFACE)
 if(FLATPOSE_SANITIZE MATCHES undefined)
